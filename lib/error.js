@@ -1,0 +1,193 @@
+'use strict'
+
+/**
+ * The one closed list of error codes. Pure: every level may import it, it imports nothing.
+ * A row is `CODE: [what happened, what to do about it]`; `{name}` is filled in from the error's details.
+ * docs/errors.md has a heading for each row (a test compares them).
+ */
+const CODES = Object.freeze({
+  // --- what the user typed: found before anything is sent
+  BAD_ADDRESS: [
+    '"{address}" is not an address: {reason}',
+    'Write an area and a number, as in M0, K127.12, W10:float32 or M0..M127.'
+  ],
+  UNKNOWN_AREA: [
+    '"{address}" names the area {area}, which this station does not have',
+    'Known areas: {known}. Add a row to the area table if the CPU has more.'
+  ],
+  OUT_OF_AREA: [
+    '"{address}" lies outside its area: {area} has {range}',
+    'Use an address inside the area, or correct the area table.'
+  ],
+  BAD_BIT: ['"{address}" asks for bit {bit}', 'Bits are numbered in decimal from 0 to 15.'],
+  BAD_COUNT: ['{count} {unit} cannot be asked for at once: {reason}', 'Ask for {least} to {most}.'],
+  BAD_TYPE: ['"{type}" is not a data type: {reason}', 'Known types: {known}.'],
+  BAD_TAG: ['the tag {name} is not valid: {reason}', 'Correct the tag table.'],
+  BAD_AREA: ['the area row {name} is not valid: {reason}', 'Correct the area table.'],
+  BAD_STATION: ['station {station} is not possible: {reason}', 'Use the number that is set on the device.'],
+  BAD_MASTER_ID: [
+    'master ID {id} is not possible: {reason}',
+    'Use 192 to 254, or a number of 0 to 191 that no station of the line has.'
+  ],
+  BAD_SETTING: ['{setting} is {value}: {reason}', 'Correct the setting.'],
+  ENV_MISSING: [
+    'the environment variable {variable} that {setting} refers to is not set',
+    'Set it where Node-RED is started, or type the value.'
+  ],
+  BAD_ITEMS: [
+    'the list of items cannot be used: {reason}',
+    'Give addresses or tag names: an array of strings, or one string with commas.'
+  ],
+  BAD_VALUE: ['{item} cannot take the value {value}: {reason}', 'Send a value that fits the type.'],
+  VALUE_OUT_OF_RANGE: ['{item} cannot take {value}: allowed is {least} to {most}', 'Send a value inside the limits.'],
+  NOTHING_TO_WRITE: [
+    'the message names nothing to write: {reason}',
+    'Set a target in the node, an object of name: value as payload, or the item as topic.'
+  ],
+  // --- guards: refused before anything is sent
+  READ_ONLY: [
+    '{item} was not written: station {station} is read-only here',
+    'Set Access to "read and write" in the configuration of the PLC.'
+  ],
+  NOT_WRITABLE: [
+    '{item} was not written: {reason}',
+    'Mark the tag as writable, add its range to the writable ranges, or fix the target in the node.'
+  ],
+  RETAINED_REFUSED: [
+    'a retained MQTT message was not written to {item}',
+    'Publish set values without retain, or accept retained messages in the node.'
+  ],
+  FUNCTION_REFUSED: [
+    'the function {function} is never sent',
+    'Only the six read and write functions of bits and words are used.'
+  ],
+  FRAME_TOO_LONG: ['{what} does not fit into one frame: {got} of at most {most} bytes', 'Split it.'],
+  TOO_MANY: ['{count} {unit} at once are too many: at most {most}', 'Split the message.'],
+  // --- the station's own word
+  PLC_WRONG_FUNCTION: [
+    'station {station} answers error 1: wrong function code',
+    'This CPU does not know the function. Try the other number of steps.'
+  ],
+  PLC_OUT_OF_RANGE: [
+    'station {station} answers error 2: {address} is out of range',
+    'The CPU does not have this address. Correct it, or the area table.'
+  ],
+  PLC_WRONG_FRAME: [
+    'station {station} answers error 3: wrong frame structure',
+    'Report it with a trace: this is a fault of the frame.'
+  ],
+  PLC_NOT_PERFORMED: [
+    'station {station} answers error 4: the CPU did not perform it',
+    'Look at the mode switch and the state of the CPU.'
+  ],
+  PLC_FRAME_TOO_LONG: [
+    'station {station} answers error 5: the frame is too long',
+    'Lower the limits per frame in the configuration of the PLC.'
+  ],
+  PLC_NO_SERVICE: [
+    'station {station} answers "no service"',
+    'This CPU does not offer the function. Try the other number of steps.'
+  ],
+  // --- the conversation
+  TIMEOUT: [
+    'station {station} did not answer within {timeout} ms',
+    'Check power, cable, A and B, station number and speed.'
+  ],
+  INCOMPLETE: [
+    'the answer of station {station} stopped after {got} of {expected} bytes',
+    'Check cable, earth and terminators; a serial server may cut frames.'
+  ],
+  CRC_ERROR: [
+    'the answer of station {station} was damaged: {got}',
+    'Check cable, earth, terminators, speed and parity.'
+  ],
+  BAD_ANSWER: [
+    'the answer of station {station} makes no sense: {reason}',
+    'Check that no other master uses this number.'
+  ],
+  WRITE_UNKNOWN: [
+    'it is not known whether station {station} carried out the write of {item}: {reason}',
+    'Read it back before you write again.'
+  ],
+  VERIFY_FAILED: ['{item} reads {got} after {expected} was written', 'The program of the PLC may overwrite it.'],
+  // --- the line
+  QUEUE_FULL: ['the queue of {line} is full ({most} requests)', 'Poll less often, or fewer items.'],
+  DEADLINE: [
+    'the request waited longer than {limit} ms on {line} and was not sent',
+    'The line is overloaded: poll less often, or fewer items.'
+  ],
+  LINE_CLOSED: [
+    '{line} was closed while the request waited',
+    'Nothing to do after a deploy; else look at the events of the line.'
+  ],
+  LINE_DOWN: ['{line} is not connected: {reason}', 'It reconnects by itself once the cause is gone.'],
+  LINE_JAMMED: [
+    '{line} is never silent: {bytes} bytes without a pause',
+    'Something sends without being asked: check the wiring, the speed and other masters.'
+  ],
+  WRITE_STALLED: [
+    '{line} does not take the bytes: flow control was not released',
+    'Switch flow control off, or check the CTS wire.'
+  ],
+  STATION_WAITS: ['station {station} is being waited for after a fault', 'Ask again in {wait} ms.'],
+  PORT_NOT_FOUND: [
+    'the port {path} does not exist',
+    'Plug the adapter in, or choose another port. Names in /dev/serial/by-id stay the same.'
+  ],
+  PORT_BUSY: [
+    'the port {path} is in use by another program',
+    'Close the other program (a terminal, ModemManager, another Node-RED).'
+  ],
+  PORT_DENIED: [
+    'the port {path} may not be opened by this user',
+    'Add the user that runs Node-RED to the group dialout (or uucp), then log in again.'
+  ],
+  PORT_GONE: ['the port {path} has gone', 'Plug the adapter in again; it reconnects by itself.'],
+  PORT_ERROR: ['the port {path} failed: {reason}', 'Look at the cause.'],
+  CONNECT_FAILED: [
+    '{path} does not accept the connection: {reason}',
+    'Check address, port and the number of connections that the serial server allows.'
+  ],
+  WIRE_IN_USE: [
+    '{path} is the same wire as {other}, which {owner} already uses',
+    'Use one line configuration for one wire.'
+  ],
+  WIRE_CONFLICT: [
+    '{owner} and {other} use {path} with different settings: {reason}',
+    'Use one line configuration, or the same settings.'
+  ],
+  MIXED_USE: ['{line} is used for {used}, it cannot also be used for {wanted}', 'Use a line of its own.'],
+  NO_CONFIGURATION: ['{node} has no {what}', 'Choose one in the dialog of the node.']
+})
+
+const shown = value => {
+  if (value === undefined) return '?'
+  return typeof value === 'string' ? value : (JSON.stringify(value) ?? String(value))
+}
+
+const fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]).slice(0, 200))
+
+/**
+ * An error with a code from {@link CODES}. Compare codes, never texts.
+ * @property {string} code the stable code (own property: Catch nodes show it)
+ * @property {Record<string, any>} details what was filled into the text
+ * @property {string} remedy what the user can do
+ */
+class PlcError extends Error {
+  /**
+   * @param {keyof typeof CODES} code
+   * @param {Record<string, any> & { cause?: unknown }} [details] values for the text; `cause` becomes `Error.cause`
+   */
+  constructor(code, details = {}) {
+    const row = CODES[code]
+    if (!row) throw new TypeError(`unknown error code ${code}`)
+    const { cause, ...rest } = details
+    super(`${fill(row[0], rest)}. ${fill(row[1], rest)}`, cause === undefined ? undefined : { cause })
+    this.name = 'PlcError'
+    this.code = code
+    this.details = rest
+    this.remedy = fill(row[1], rest)
+  }
+}
+
+module.exports = { CODES, PlcError }

@@ -157,6 +157,14 @@ const CODES = Object.freeze({
     'Use one line configuration, or the same settings.'
   ],
   MIXED_USE: ['{line} is used for {used}, it cannot also be used for {wanted}', 'Use a line of its own.'],
+  SUPERSEDED: [
+    '{item} was not written: a newer value came while this one waited',
+    'Nothing to do; switch "only the latest" off in the node to write every value.'
+  ],
+  DUPLICATE_STATION: [
+    '{owner} and {other} are both station {station} of {line}',
+    'Use one configuration for one PLC, or correct the number.'
+  ],
   NO_CONFIGURATION: ['{node} has no {what}', 'Choose one in the dialog of the node.']
 })
 

@@ -1,0 +1,54 @@
+'use strict'
+
+/**
+ * Runs the tests: all of test/ but test/system, two files at a time; or what is named in the arguments.
+ *   npm test                              everything
+ *   npm test -- test/levels.test.js       these files or folders
+ *   npm test -- -g "late answer"          all other arguments go to mocha
+ * The last line is `N passed, N failed`; the exit code is not 0 if a test failed or none ran.
+ */
+
+const { spawn } = require('node:child_process')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+
+const root = path.join(__dirname, '..')
+const JOBS = 2
+
+/** @returns {string[]} the test files below a folder, sorted, without those of test/system */
+function testFiles(folder) {
+  const system = path.join('test', 'system') + path.sep
+  return fs
+    .readdirSync(path.join(root, folder), { recursive: true, encoding: 'utf8' })
+    .map(name => path.join(folder, name))
+    .filter(file => file.endsWith('.test.js') && !file.startsWith(system))
+    .sort()
+}
+
+function mochaArguments(given) {
+  const named = given.some(arg => /^(\.\/)?test\b/.test(arg) && fs.existsSync(path.join(root, arg)))
+  const parallel = given.some(arg => /^--(no-)?parallel$/.test(arg)) || os.availableParallelism() < 2 || named
+  return [
+    path.join(root, 'node_modules', 'mocha', 'bin', 'mocha.js'),
+    ...['--reporter', path.join(root, 'test', 'support', 'reporter.js')],
+    ...(parallel ? [] : ['--parallel', '--jobs', String(JOBS)]),
+    ...(process.env.CI ? ['--forbid-only'] : []),
+    ...['--fail-zero', ...given],
+    ...(named ? [] : testFiles('test'))
+  ]
+}
+
+function main() {
+  const child = spawn(process.execPath, mochaArguments(process.argv.slice(2)), { cwd: root, stdio: 'inherit' })
+  for (const signal of /** @type {const} */ (['SIGINT', 'SIGTERM'])) process.on(signal, () => child.kill(signal))
+  child.once('error', error => {
+    console.error(error.message)
+    process.exitCode = 1
+  })
+  child.once('exit', code => {
+    process.exitCode = code ?? 1
+  })
+}
+
+main()

@@ -109,6 +109,7 @@ const CODES = Object.freeze({
     'it is not known whether station {station} carried out the write of {item}: {reason}',
     'Read it back before you write again.'
   ],
+  NOT_A_VALUE: ['{item} cannot be read as {type}: {reason}', 'Check the data type and the word order of the item.'],
   VERIFY_FAILED: ['{item} reads {got} after {expected} was written', 'The program of the PLC may overwrite it.'],
   // --- the line
   QUEUE_FULL: ['the queue of {line} is full ({most} requests)', 'Poll less often, or fewer items.'],
@@ -164,6 +165,12 @@ const CODES = Object.freeze({
   DUPLICATE_STATION: [
     '{owner} and {other} are both station {station} of {line}',
     'Use one configuration for one PLC, or correct the number.'
+  ],
+  // --- the simulator
+  SIM_DEADLOCK: ['nothing can happen any more, but this is still open: {open}', 'Report it with the seed of the run.'],
+  NO_PTY: [
+    'no virtual serial port can be made: {reason}',
+    'Use TCP, or install @lydell/node-pty beside this package (Linux, macOS).'
   ],
   NO_CONFIGURATION: ['{node} has no {what}', 'Choose one in the dialog of the node.']
 })

@@ -1,0 +1,145 @@
+'use strict'
+
+/**
+ * Every property of every node, in one table: the node reads its configuration through it, the dialog's validators are made of it (scripts/editor), a test
+ * compares it with the defaults of the .html files, and docs/nodes.md lists it. Pure: it imports nothing, so that the browser can have it too.
+ */
+
+/** @typedef {{ kind: string, fallback: any, least?: number, most?: number, known?: string[], whole?: boolean, except?: [number, number], needed?: boolean }} Row */
+
+const text = (fallback = '', more = {}) => ({ kind: 'text', fallback, ...more })
+const number = (fallback, least, most, more = {}) => ({ kind: 'number', fallback, least, most, whole: true, ...more })
+const choice = (fallback, ...known) => ({ kind: 'choice', fallback, known })
+const flag = (fallback = false) => ({ kind: 'flag', fallback })
+const list = () => ({ kind: 'list', fallback: [] })
+const node = () => ({ kind: 'node', fallback: '', needed: true })
+
+/** @type {Record<string, Record<string, Row>>} */
+const PROPERTIES = {
+  'plc-line': {
+    name: text(),
+    transport: choice('serial', 'serial', 'tcp', 'simulated'),
+    path: text('', { needed: true }),
+    baudRate: number(19200, 50, 4000000),
+    dataBits: choice('8', '8', '7'),
+    parity: choice('none', 'none', 'even', 'odd'),
+    stopBits: choice('1', '1', '2'),
+    host: text('', { needed: true }),
+    port: number(4001, 1, 65535),
+    gap: number(0, 0, 10000, { whole: false }),
+    echo: choice('auto', 'auto', 'on', 'off'),
+    dtr: choice('unchanged', 'unchanged', 'on', 'off'),
+    rts: choice('unchanged', 'unchanged', 'on', 'off'),
+    openDelay: number(0, 0, 60000),
+    slack: number(0, 0, 60000),
+    latenessBound: number(0, 0, 3600000),
+    queueLimit: number(1000, 1, 100000),
+    writesBeforePoll: number(4, 1, 1000)
+  },
+  'nx-config': {
+    name: text(),
+    line: node(),
+    station: number('', 0, 255, { except: [192, 254], needed: true }),
+    steps: choice('2', '2', '4'),
+    timeout: number(3000, 10, 60000),
+    attempts: number(3, 1, 10),
+    masterIds: text('E2..E9'),
+    soleMaster: flag(),
+    access: choice('read', 'read', 'write'),
+    writableRanges: text(),
+    readWords: number(128, 1, 128),
+    writeWords: number(64, 1, 127),
+    readBits: number(255, 1, 255),
+    writeBits: number(254, 1, 254),
+    areas: list(),
+    tags: list()
+  },
+  'nx-read': {
+    name: text(),
+    plc: node(),
+    itemsType: choice('list', 'list', 'msg'),
+    items: list(),
+    interval: number(1000, 0, 86400000),
+    format: choice('object', 'object', 'message', 'envelope', 'list'),
+    badValues: choice('omit', 'omit', 'null'),
+    ranges: choice('array', 'array', 'values'),
+    booleans: choice('boolean', 'boolean', 'number'),
+    report: choice('all', 'all', 'changed', 'allOnChange')
+  },
+  'nx-write': {
+    name: text(),
+    plc: node(),
+    target: text(),
+    verify: flag(),
+    onFailure: choice('error', 'error', 'output'),
+    acceptRetained: flag(),
+    coalesce: flag(),
+    topic: choice('item', 'item', 'keep', 'fixed'),
+    topicText: text()
+  }
+}
+
+const VARIABLE = /^\$\{([^}]+)\}$/
+
+const readNumber = (row, given) => {
+  const value = typeof given === 'number' ? given : Number(String(given).trim())
+  if (!Number.isFinite(value)) return { problem: 'number' }
+  if (row.whole && !Number.isInteger(value)) return { problem: 'whole' }
+  if (value < row.least || value > row.most) return { problem: 'range' }
+  if (row.except && value >= row.except[0] && value <= row.except[1]) return { problem: 'except' }
+  return { value }
+}
+
+const readFlag = given => {
+  if (given === true || given === 'true') return { value: true }
+  return given === false || given === 'false' ? { value: false } : { problem: 'flag' }
+}
+
+const readChoice = (row, given) =>
+  row.known.includes(String(given)) ? { value: String(given) } : { problem: 'choice' }
+
+const READERS = {
+  number: readNumber,
+  choice: readChoice,
+  flag: (_row, given) => readFlag(given),
+  list: (_row, given) => (Array.isArray(given) ? { value: given } : { problem: 'list' }),
+  node: (_row, given) => ({ value: String(given) }),
+  text: (_row, given) => ({ value: String(given).trim() })
+}
+
+/**
+ * Reads one property as it was saved: missing or empty means its default, numbers and flags may be texts, `${NAME}` is a variable that was not filled in.
+ * @param {Row} row
+ * @param {any} given
+ * @returns {{ value?: any, problem?: string, variable?: string }} `problem`: missing, number, whole, range, except, flag, choice or list
+ */
+const readProperty = (row, given) => {
+  const missing = given === undefined || given === null || (typeof given === 'string' && given.trim() === '')
+  if (missing) return row.needed && row.fallback === '' ? { problem: 'missing', value: row.fallback } : { value: row.fallback }
+  const variable = typeof given === 'string' ? VARIABLE.exec(given.trim()) : null
+  if (variable) return { variable: variable[1] }
+  return READERS[row.kind](row, given)
+}
+
+/**
+ * What a property may be, for the text of an error.
+ * @param {Row} row
+ */
+const allowed = row => {
+  if (row.kind === 'number') {
+    return row.except ? `${row.least} to ${row.except[0] - 1}, or ${row.most}` : `${row.least} to ${row.most}`
+  }
+  return row.known ? row.known.join(', ') : row.kind
+}
+
+// which properties count only for some transports
+const APPLIES = { path: 'serial', host: 'tcp', port: 'tcp' }
+
+/**
+ * Whether a property counts at all with the others as they are.
+ * @param {string} type @param {string} name @param {Record<string, any>} config
+ */
+const applies = (type, name, config) =>
+  type !== 'plc-line' || !APPLIES[name] || APPLIES[name] === (config.transport || 'serial')
+
+module.exports = { PROPERTIES, readProperty, allowed, applies }

@@ -1,0 +1,1846 @@
+// Built by scripts/build-editor.js from scripts/editor and lib. Do not edit.
+"use strict";
+var nxlineSerialPlc = (() => {
+  var __getOwnPropNames = Object.getOwnPropertyNames;
+  var __commonJS = (cb, mod) => function __require() {
+    try {
+      return mod || (0, cb[__getOwnPropNames(cb)[0]])((mod = { exports: {} }).exports, mod), mod.exports;
+    } catch (e) {
+      throw mod = 0, e;
+    }
+  };
+
+  // nodes/properties.js
+  var require_properties = __commonJS({
+    "nodes/properties.js"(exports, module) {
+      "use strict";
+      var text = (fallback = "", more = {}) => ({ kind: "text", fallback, ...more });
+      var number = (fallback, least, most, more = {}) => ({ kind: "number", fallback, least, most, whole: true, ...more });
+      var choice = (fallback, ...known) => ({ kind: "choice", fallback, known });
+      var flag = (fallback = false) => ({ kind: "flag", fallback });
+      var list = () => ({ kind: "list", fallback: [] });
+      var node = () => ({ kind: "node", fallback: "", needed: true });
+      var PROPERTIES = {
+        "plc-line": {
+          name: text(),
+          transport: choice("serial", "serial", "tcp", "simulated"),
+          path: text("", { needed: true }),
+          baudRate: number(19200, 50, 4e6),
+          dataBits: choice("8", "8", "7"),
+          parity: choice("none", "none", "even", "odd"),
+          stopBits: choice("1", "1", "2"),
+          host: text("", { needed: true }),
+          port: number(4001, 1, 65535),
+          gap: number(0, 0, 1e4, { whole: false }),
+          echo: choice("auto", "auto", "on", "off"),
+          dtr: choice("unchanged", "unchanged", "on", "off"),
+          rts: choice("unchanged", "unchanged", "on", "off"),
+          openDelay: number(0, 0, 6e4),
+          slack: number(0, 0, 6e4),
+          latenessBound: number(0, 0, 36e5),
+          queueLimit: number(1e3, 1, 1e5),
+          writesBeforePoll: number(4, 1, 1e3)
+        },
+        "nx-config": {
+          name: text(),
+          line: node(),
+          station: number("", 0, 255, { except: [192, 254], needed: true }),
+          steps: choice("2", "2", "4"),
+          timeout: number(3e3, 10, 6e4),
+          attempts: number(3, 1, 10),
+          masterIds: text("E2..E9"),
+          soleMaster: flag(),
+          access: choice("read", "read", "write"),
+          writableRanges: text(),
+          readWords: number(128, 1, 128),
+          writeWords: number(64, 1, 127),
+          readBits: number(255, 1, 255),
+          writeBits: number(254, 1, 254),
+          areas: list(),
+          tags: list()
+        },
+        "nx-read": {
+          name: text(),
+          plc: node(),
+          itemsType: choice("list", "list", "msg"),
+          items: list(),
+          interval: number(1e3, 0, 864e5),
+          format: choice("object", "object", "message", "envelope", "list"),
+          badValues: choice("omit", "omit", "null"),
+          ranges: choice("array", "array", "values"),
+          booleans: choice("boolean", "boolean", "number"),
+          report: choice("all", "all", "changed", "allOnChange")
+        },
+        "nx-write": {
+          name: text(),
+          plc: node(),
+          target: text(),
+          verify: flag(),
+          onFailure: choice("error", "error", "output"),
+          acceptRetained: flag(),
+          coalesce: flag(),
+          topic: choice("item", "item", "keep", "fixed"),
+          topicText: text()
+        }
+      };
+      var VARIABLE = /^\$\{([^}]+)\}$/;
+      var readNumber = (row, given) => {
+        const value = typeof given === "number" ? given : Number(String(given).trim());
+        if (!Number.isFinite(value)) return { problem: "number" };
+        if (row.whole && !Number.isInteger(value)) return { problem: "whole" };
+        if (value < row.least || value > row.most) return { problem: "range" };
+        if (row.except && value >= row.except[0] && value <= row.except[1]) return { problem: "except" };
+        return { value };
+      };
+      var readFlag = (given) => {
+        if (given === true || given === "true") return { value: true };
+        return given === false || given === "false" ? { value: false } : { problem: "flag" };
+      };
+      var readChoice = (row, given) => row.known.includes(String(given)) ? { value: String(given) } : { problem: "choice" };
+      var READERS = {
+        number: readNumber,
+        choice: readChoice,
+        flag: (_row, given) => readFlag(given),
+        list: (_row, given) => Array.isArray(given) ? { value: given } : { problem: "list" },
+        node: (_row, given) => ({ value: String(given) }),
+        text: (_row, given) => ({ value: String(given).trim() })
+      };
+      var readProperty = (row, given) => {
+        const missing = given === void 0 || given === null || typeof given === "string" && given.trim() === "";
+        if (missing) return row.needed && row.fallback === "" ? { problem: "missing", value: row.fallback } : { value: row.fallback };
+        const variable = typeof given === "string" ? VARIABLE.exec(given.trim()) : null;
+        if (variable) return { variable: variable[1] };
+        return READERS[row.kind](row, given);
+      };
+      var allowed = (row) => {
+        if (row.kind === "number") {
+          return row.except ? `${row.least} to ${row.except[0] - 1}, or ${row.most}` : `${row.least} to ${row.most}`;
+        }
+        return row.known ? row.known.join(", ") : row.kind;
+      };
+      var APPLIES = { path: "serial", host: "tcp", port: "tcp" };
+      var applies = (type, name, config) => type !== "plc-line" || !APPLIES[name] || APPLIES[name] === (config.transport || "serial");
+      module.exports = { PROPERTIES, readProperty, allowed, applies };
+    }
+  });
+
+  // scripts/editor/texts.js
+  var require_texts = __commonJS({
+    "scripts/editor/texts.js"(exports, module) {
+      "use strict";
+      var SHARED = "@nxline/node-red-serial-plc/plc-line:";
+      var t = (key, values) => RED._(`${SHARED}${key}`, values);
+      var errorText = (error) => {
+        if (!error.code) return String(error.message || error);
+        const key = `${SHARED}error.${error.code}`;
+        const text = RED._(key, { ...error.details, defaultValue: error.message });
+        return text && !text.endsWith(`error.${error.code}`) ? text : error.message;
+      };
+      var reasonOf = (error) => errorText(error.cause && error.cause.code ? error.cause : error);
+      module.exports = { t, errorText, reasonOf };
+    }
+  });
+
+  // lib/error.js
+  var require_error = __commonJS({
+    "lib/error.js"(exports, module) {
+      "use strict";
+      var CODES = Object.freeze({
+        // --- what the user typed: found before anything is sent
+        BAD_ADDRESS: [
+          '"{address}" is not an address: {reason}',
+          "Write an area and a number, as in M0, K127.12, W10:float32 or M0..M127."
+        ],
+        UNKNOWN_AREA: [
+          '"{address}" names the area {area}, which this station does not have',
+          "Known areas: {known}. Add a row to the area table if the CPU has more."
+        ],
+        OUT_OF_AREA: [
+          '"{address}" lies outside its area: {area} has {range}',
+          "Use an address inside the area, or correct the area table."
+        ],
+        BAD_BIT: ['"{address}" asks for bit {bit}', "Bits are numbered in decimal from 0 to 15."],
+        BAD_COUNT: ["{count} {unit} cannot be asked for at once: {reason}", "Ask for {least} to {most}."],
+        BAD_TYPE: ['"{type}" is not a data type: {reason}', "Known types: {known}."],
+        BAD_TAG: ["the tag {name} is not valid: {reason}", "Correct the tag table."],
+        BAD_AREA: ["the area row {name} is not valid: {reason}", "Correct the area table."],
+        BAD_STATION: ["station {station} is not possible: {reason}", "Use the number that is set on the device."],
+        BAD_MASTER_ID: [
+          "master ID {id} is not possible: {reason}",
+          "Use 192 to 254, or a number of 0 to 191 that no station of the line has."
+        ],
+        BAD_SETTING: ["{setting} is {value}: {reason}", "Correct the setting."],
+        ENV_MISSING: [
+          "the environment variable {variable} that {setting} refers to is not set",
+          "Set it where Node-RED is started, or type the value."
+        ],
+        BAD_ITEMS: [
+          "the list of items cannot be used: {reason}",
+          "Give addresses or tag names: an array of strings, or one string with commas."
+        ],
+        BAD_VALUE: ["{item} cannot take the value {value}: {reason}", "Send a value that fits the type."],
+        VALUE_OUT_OF_RANGE: ["{item} cannot take {value}: allowed is {least} to {most}", "Send a value inside the limits."],
+        NOTHING_TO_WRITE: [
+          "the message names nothing to write: {reason}",
+          "Set a target in the node, an object of name: value as payload, or the item as topic."
+        ],
+        // --- guards: refused before anything is sent
+        READ_ONLY: [
+          "{item} was not written: station {station} is read-only here",
+          'Set Access to "read and write" in the configuration of the PLC.'
+        ],
+        NOT_WRITABLE: [
+          "{item} was not written: {reason}",
+          "Mark the tag as writable, add its range to the writable ranges, or fix the target in the node."
+        ],
+        RETAINED_REFUSED: [
+          "a retained MQTT message was not written to {item}",
+          "Publish set values without retain, or accept retained messages in the node."
+        ],
+        FUNCTION_REFUSED: [
+          "the function {function} is never sent",
+          "Only the six read and write functions of bits and words are used."
+        ],
+        FRAME_TOO_LONG: ["{what} does not fit into one frame: {got} of at most {most} bytes", "Split it."],
+        TOO_MANY: ["{count} {unit} at once are too many: at most {most}", "Split the message."],
+        // --- the station's own word
+        PLC_WRONG_FUNCTION: [
+          "station {station} answers error 1: wrong function code",
+          "This CPU does not know the function. Try the other number of steps."
+        ],
+        PLC_OUT_OF_RANGE: [
+          "station {station} answers error 2: {address} is out of range",
+          "The CPU does not have this address. Correct it, or the area table."
+        ],
+        PLC_WRONG_FRAME: [
+          "station {station} answers error 3: wrong frame structure",
+          "Report it with a trace: this is a fault of the frame."
+        ],
+        PLC_NOT_PERFORMED: [
+          "station {station} answers error 4: the CPU did not perform it",
+          "Look at the mode switch and the state of the CPU."
+        ],
+        PLC_FRAME_TOO_LONG: [
+          "station {station} answers error 5: the frame is too long",
+          "Lower the limits per frame in the configuration of the PLC."
+        ],
+        PLC_NO_SERVICE: [
+          'station {station} answers "no service"',
+          "This CPU does not offer the function. Try the other number of steps."
+        ],
+        // --- the conversation
+        TIMEOUT: [
+          "station {station} did not answer within {timeout} ms",
+          "Check power, cable, A and B, station number and speed."
+        ],
+        INCOMPLETE: [
+          "the answer of station {station} stopped after {got} of {expected} bytes",
+          "Check cable, earth and terminators; a serial server may cut frames."
+        ],
+        CRC_ERROR: [
+          "the answer of station {station} was damaged: {got}",
+          "Check cable, earth, terminators, speed and parity."
+        ],
+        BAD_ANSWER: [
+          "the answer of station {station} makes no sense: {reason}",
+          "Check that no other master uses this number."
+        ],
+        WRITE_UNKNOWN: [
+          "it is not known whether station {station} carried out the write of {item}: {reason}",
+          "Read it back before you write again."
+        ],
+        NOT_A_VALUE: ["{item} cannot be read as {type}: {reason}", "Check the data type and the word order of the item."],
+        VERIFY_FAILED: ["{item} reads {got} after {expected} was written", "The program of the PLC may overwrite it."],
+        // --- the line
+        QUEUE_FULL: ["the queue of {line} is full ({most} requests)", "Poll less often, or fewer items."],
+        DEADLINE: [
+          "the request waited longer than {limit} ms on {line} and was not sent",
+          "The line is overloaded: poll less often, or fewer items."
+        ],
+        LINE_CLOSED: [
+          "{line} was closed while the request waited",
+          "Nothing to do after a deploy; else look at the events of the line."
+        ],
+        LINE_DOWN: ["{line} is not connected: {reason}", "It reconnects by itself once the cause is gone."],
+        LINE_JAMMED: [
+          "{line} is never silent: {bytes} bytes without a pause",
+          "Something sends without being asked: check the wiring, the speed and other masters."
+        ],
+        WRITE_STALLED: [
+          "{line} does not take the bytes: flow control was not released",
+          "Switch flow control off, or check the CTS wire."
+        ],
+        STATION_WAITS: ["station {station} is being waited for after a fault", "Ask again in {wait} ms."],
+        PORT_NOT_FOUND: [
+          "the port {path} does not exist",
+          "Plug the adapter in, or choose another port. Names in /dev/serial/by-id stay the same."
+        ],
+        PORT_BUSY: [
+          "the port {path} is in use by another program",
+          "Close the other program (a terminal, ModemManager, another Node-RED)."
+        ],
+        PORT_DENIED: [
+          "the port {path} may not be opened by this user",
+          "Add the user that runs Node-RED to the group dialout (or uucp), then log in again."
+        ],
+        PORT_GONE: ["the port {path} has gone", "Plug the adapter in again; it reconnects by itself."],
+        PORT_ERROR: ["the port {path} failed: {reason}", "Look at the cause."],
+        CONNECT_FAILED: [
+          "{path} does not accept the connection: {reason}",
+          "Check address, port and the number of connections that the serial server allows."
+        ],
+        WIRE_IN_USE: [
+          "{path} is the same wire as {other}, which {owner} already uses",
+          "Use one line configuration for one wire."
+        ],
+        WIRE_CONFLICT: [
+          "{owner} and {other} use {path} with different settings: {reason}",
+          "Use one line configuration, or the same settings."
+        ],
+        MIXED_USE: ["{line} is used for {used}, it cannot also be used for {wanted}", "Use a line of its own."],
+        SUPERSEDED: [
+          "{item} was not written: a newer value came while this one waited",
+          'Nothing to do; switch "only the latest" off in the node to write every value.'
+        ],
+        DUPLICATE_STATION: [
+          "{owner} and {other} are both station {station} of {line}",
+          "Use one configuration for one PLC, or correct the number."
+        ],
+        // --- the simulator
+        SIM_DEADLOCK: ["nothing can happen any more, but this is still open: {open}", "Report it with the seed of the run."],
+        NO_PTY: [
+          "no virtual serial port can be made: {reason}",
+          "Use TCP, or install @lydell/node-pty beside this package (Linux, macOS)."
+        ],
+        NO_CONFIGURATION: ["{node} has no {what}", "Choose one in the dialog of the node."]
+      });
+      var shown = (value) => {
+        if (value === void 0) return "?";
+        return typeof value === "string" ? value : JSON.stringify(value) ?? String(value);
+      };
+      var fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]).slice(0, 200));
+      var PlcError = class extends Error {
+        /**
+         * @param {keyof typeof CODES} code
+         * @param {Record<string, any> & { cause?: unknown }} [details] values for the text; `cause` becomes `Error.cause`
+         */
+        constructor(code, details = {}) {
+          const row = CODES[code];
+          if (!row) throw new TypeError(`unknown error code ${code}`);
+          const { cause, ...rest } = details;
+          super(`${fill(row[0], rest)}. ${fill(row[1], rest)}`, cause === void 0 ? void 0 : { cause });
+          this.name = "PlcError";
+          this.code = code;
+          this.details = rest;
+          this.remedy = fill(row[1], rest);
+        }
+      };
+      module.exports = { CODES, PlcError };
+    }
+  });
+
+  // lib/codec/nx/areas.js
+  var require_areas = __commonJS({
+    "lib/codec/nx/areas.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var LAST_WORD = 65535;
+      var LAST_BIT = 65535;
+      var MOST_ROWS = 64;
+      var AREAS = table([
+        // area  base   words as       certainty      writable note
+        ["R", 0, 128, "both", "likely", true, "external I/O"],
+        ["L", 128, 64, "both", "likely", true, "link"],
+        ["M", 192, 128, "both", "certain", true, "internal relay"],
+        ["K", 320, 128, "both", "certain", true, "keep (retentive)"],
+        ["F", 448, 16, "both", "unconfirmed", false, "special flags"],
+        ["TC", 464, 16, "bits", "unconfirmed", false, "timer and counter contacts"],
+        ["W", 512, 2048, "words", "unconfirmed", false, "data"],
+        ["SV", 2560, 256, "words", "unconfirmed", false, "set values"],
+        ["PV", 2816, 256, "words", "unconfirmed", false, "present values"],
+        ["SR", 3072, 512, "words", "unconfirmed", false, "special registers"]
+      ]);
+      function table(rows) {
+        return Object.freeze(
+          rows.map(
+            ([area, base, words, as, certainty, writable, note]) => Object.freeze({ area, base, words, as, certainty, writable, note })
+          )
+        );
+      }
+      var ACCESS = ["both", "bits", "words"];
+      var PROPERTIES = ["area", "base", "words", "as", "confirmed", "writable", "remove", "note"];
+      var hex = (value) => `$${value.toString(16).toUpperCase().padStart(4, "0")}`;
+      var span = (row) => `${row.area} (${hex(row.base)}..${hex(row.base + row.words - 1)})`;
+      function areaMap(rows = []) {
+        if (!Array.isArray(rows)) throw bad("table", "it is not a list of rows");
+        if (rows.length > MOST_ROWS) throw bad("table", `${rows.length} rows, at most ${MOST_ROWS}`);
+        const byName = new Map(AREAS.map((row) => [row.area, row]));
+        const seen = /* @__PURE__ */ new Set();
+        for (const given of rows) {
+          const name = nameOf(given);
+          if (seen.has(name)) throw bad(name, "two rows have this name");
+          seen.add(name);
+          const row = merge(name, given, byName.get(name));
+          if (row) byName.set(name, row);
+          else byName.delete(name);
+        }
+        const list = Object.freeze([...byName.values()].sort((a, b) => a.base - b.base));
+        for (let i = 1; i < list.length; i++) {
+          if (list[i - 1].base + list[i - 1].words > list[i].base) {
+            throw bad(list[i].area, `${span(list[i])} overlaps ${span(list[i - 1])}`);
+          }
+        }
+        return Object.freeze({
+          list,
+          get: (name) => byName.get(name),
+          at: (word) => list.find((row) => word >= row.base && word < row.base + row.words)
+        });
+      }
+      function nameOf(given) {
+        if (given === null || typeof given !== "object" || Array.isArray(given)) throw bad("?", "a row must be an object");
+        const name = own(given, "area");
+        if (typeof name !== "string" || !/^[A-Za-z]{1,4}$/.test(name))
+          throw bad(name, "the name must be 1 to 4 letters A to Z");
+        const unknown = Object.keys(given).find((key) => !PROPERTIES.includes(key));
+        if (unknown !== void 0) throw bad(name, `it has the unknown property ${unknown}`);
+        return name.toUpperCase();
+      }
+      function merge(name, given, old) {
+        if (flag(name, given, "remove")) {
+          if (!old) throw bad(name, "there is no such area to remove");
+          return null;
+        }
+        const base = number(name, given, "base", old);
+        const words = number(name, given, "words", old);
+        const as = own(given, "as") ?? old?.as ?? "both";
+        if (!ACCESS.includes(as)) throw bad(name, '"as" must be both, bits or words');
+        if (words < 1) throw bad(name, "it must have at least one word");
+        const last = base + words - 1;
+        if (last > LAST_WORD) throw bad(name, `it ends at ${hex(last)}, after the last word ${hex(LAST_WORD)}`);
+        if (as === "bits" && last * 16 + 15 > LAST_BIT)
+          throw bad(name, `its bits end after ${hex(LAST_BIT)}: use "as": "words"`);
+        return Object.freeze({ area: name, base, words, as, ...trust(name, given, { base, words, as, old }) });
+      }
+      function trust(name, given, { base, words, as, old }) {
+        const confirmed = flag(name, given, "confirmed");
+        const writable = flag(name, given, "writable");
+        const note = own(given, "note") ?? old?.note ?? "";
+        if (typeof note !== "string") throw bad(name, "the note must be text");
+        const same = old && old.base === base && old.words === words && old.as === as;
+        const known = same ? old : { certainty: "unconfirmed", writable: false };
+        const sure = confirmed ? { certainty: "certain", writable: true } : known;
+        if (writable && !sure.writable) throw bad(name, "it can be writable only if it is confirmed");
+        return { certainty: sure.certainty, writable: sure.writable && writable !== false, note: note.slice(0, 100) };
+      }
+      var own = (row, key) => Object.hasOwn(row, key) ? row[key] : void 0;
+      function flag(name, row, key) {
+        const value = own(row, key);
+        if (value !== void 0 && typeof value !== "boolean") throw bad(name, `"${key}" must be true or false`);
+        return value;
+      }
+      function number(name, row, key, old) {
+        const given = own(row, key);
+        if ((given === void 0 || given === "") && old) return old[key];
+        const text = typeof given === "string" ? given.trim().replace(/^\$/, "0x") : given;
+        const value = typeof text === "string" && /^(0x[0-9a-f]{1,5}|\d{1,6})$/i.test(text) ? Number(text) : text;
+        if (!Number.isInteger(value) || value < 0 || value > LAST_WORD + 1) {
+          throw bad(name, `"${key}" must be a whole number from 0 to ${LAST_WORD}, or hex as in 0x1C0`);
+        }
+        return value;
+      }
+      var bad = (name, reason) => new PlcError("BAD_AREA", { name, reason });
+      module.exports = { AREAS, LAST_BIT, LAST_WORD, areaMap };
+    }
+  });
+
+  // lib/codec/nx/functions.js
+  var require_functions = __commonJS({
+    "lib/codec/nx/functions.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var FUNCTIONS = table([
+        // name            2-step 4-step most unit        repeatable sendable
+        ["readBits", 33, 1, 255, "bits", true, true],
+        ["writeBits", 34, 2, 254, "bits", false, true],
+        ["readWords", 35, 3, 128, "words", true, true],
+        ["writeWords", 36, 4, 127, "words", false, true],
+        ["readMixed", 37, 5, 128, "addresses", true, true],
+        ["writeMixed", 38, 6, 85, "addresses", false, true],
+        ["readProgram", 39, 7, 0, "", false, false],
+        ["writeProgram", 40, 8, 0, "", false, false],
+        ["readInstruction", 41, 9, 0, "", false, false],
+        ["changeInstruction", 42, 10, 0, "", false, false],
+        ["changeOperand", 43, 11, 0, "", false, false],
+        ["insertInstruction", 44, 12, 0, "", false, false],
+        ["deleteInstruction", 45, 13, 0, "", false, false],
+        ["searchInstruction", 46, 14, 0, "", false, false],
+        ["searchOperand", 47, 15, 0, "", false, false],
+        ["deleteProgram", 32, 16, 0, "", false, false],
+        ["noService", 0, 0, 0, "", false, false]
+      ]);
+      function table(rows) {
+        return Object.freeze(
+          rows.map(
+            ([name, two, four, most, unit, repeatable, sendable]) => Object.freeze({ name, two, four, most, unit, repeatable, sendable })
+          )
+        );
+      }
+      var ANSWER = 128;
+      var ACKNOWLEDGE = 128;
+      var RESPONSE_REQUEST = 0;
+      var NO_SERVICE = 0;
+      var ERRORS = Object.freeze({
+        1: "PLC_WRONG_FUNCTION",
+        2: "PLC_OUT_OF_RANGE",
+        3: "PLC_WRONG_FRAME",
+        4: "PLC_NOT_PERFORMED",
+        5: "PLC_FRAME_TOO_LONG"
+      });
+      var byName = new Map(FUNCTIONS.map((row) => [row.name, row]));
+      var byCode = /* @__PURE__ */ new Map();
+      for (const row of FUNCTIONS) {
+        if (row.name === "noService") continue;
+        byCode.set(row.two, { row, steps: 2 });
+        byCode.set(row.four, { row, steps: 4 });
+      }
+      function functionOf(name) {
+        const row = typeof name === "string" ? byName.get(name) : void 0;
+        if (!row || !row.sendable) throw new PlcError("FUNCTION_REFUSED", { function: String(name) });
+        return row;
+      }
+      var queryCode = (row, steps) => steps === 4 ? row.four : row.two;
+      var answerCode = (row, steps) => queryCode(row, steps) + ANSWER;
+      var functionByCode = (code) => byCode.get(code);
+      module.exports = {
+        FUNCTIONS,
+        ERRORS,
+        ANSWER,
+        ACKNOWLEDGE,
+        RESPONSE_REQUEST,
+        NO_SERVICE,
+        functionOf,
+        functionByCode,
+        queryCode,
+        answerCode
+      };
+    }
+  });
+
+  // lib/codec/nx/address.js
+  var require_address = __commonJS({
+    "lib/codec/nx/address.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { areaMap, LAST_BIT, LAST_WORD } = require_areas();
+      var { functionOf, queryCode } = require_functions();
+      var MOST_CHARACTERS = 64;
+      var MOST_RANGE = 4096;
+      var STANDARD = areaMap();
+      var NOTATION = /^([A-Z]{1,4})(\d{1,8})(?:\.(\d{1,8}))?$/;
+      var RAW = /^@(BIT:)?(0X[0-9A-F]{1,8}|\d{1,8})(?:\.(\d{1,8}))?$/;
+      var hex = (value) => value.toString(16).toUpperCase().padStart(4, "0");
+      function parseAddress(text, areas = STANDARD) {
+        if (typeof text !== "string") throw new PlcError("BAD_ADDRESS", { address: text, reason: "it is not text" });
+        const clean = text.trim();
+        if (clean === "") throw bad(text, "it is empty");
+        if (clean.length > MOST_CHARACTERS)
+          throw bad(clean.slice(0, 20) + "…", `it has more than ${MOST_CHARACTERS} characters`);
+        const [first, last, more] = clean.split(/\s*\.\.\s*/);
+        if (more !== void 0) throw bad(clean, "a range has two ends");
+        const from = parseOne(first, clean, areas);
+        if (last === void 0) return finish(from, 1, areas);
+        return range(from, parseOne(last, clean, areas), { clean, areas });
+      }
+      function range(from, to, { clean, areas }) {
+        if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a word");
+        if (from.raw !== to.raw || !from.raw && from.row !== to.row) throw bad(clean, "both ends must lie in one area");
+        const count = to.address - from.address + 1;
+        if (count < 1) throw bad(clean, "the range runs backwards");
+        if (count > MOST_RANGE) {
+          const reason = "the range is too long";
+          throw new PlcError("BAD_COUNT", { count, unit: `${from.kind}s`, reason, least: 1, most: MOST_RANGE });
+        }
+        return finish(from, count, areas);
+      }
+      function parseOne(part, whole, areas) {
+        const upper = part.trim().toUpperCase();
+        const raw = RAW.exec(upper);
+        if (raw) return parseRaw(raw, whole);
+        const found = NOTATION.exec(upper);
+        if (!found)
+          throw bad(
+            whole,
+            part === "" ? "one end of the range is missing" : "it is neither like M0 or K127.12 nor like @0x00C0"
+          );
+        const [, area, digits, bit] = found;
+        const row = areas.get(area);
+        if (!row) {
+          throw new PlcError("UNKNOWN_AREA", { address: whole, area, known: areas.list.map((each) => each.area).join(", ") });
+        }
+        const number = Number(digits);
+        if (row.as === "bits" && bit !== void 0) throw bad(whole, `${area} has contacts: a number without a bit`);
+        const size = row.as === "bits" ? row.words * 16 : row.words;
+        if (number >= size) throw new PlcError("OUT_OF_AREA", { address: whole, area, range: `${area}0..${area}${size - 1}` });
+        if (row.as === "bits") return { kind: "bit", address: row.base * 16 + number, row, raw: false };
+        if (bit === void 0) return { kind: "word", address: row.base + number, row, raw: false };
+        return { kind: "bit", address: (row.base + number) * 16 + bitOf(bit, whole), row, raw: false };
+      }
+      function parseRaw(found, whole) {
+        const [, isBit, digits, bit] = found;
+        const number = Number(digits);
+        const kind = isBit || bit !== void 0 ? "bit" : "word";
+        if (isBit && bit !== void 0) throw bad(whole, "@bit: is followed by a bit address alone");
+        const limit = isBit ? LAST_BIT : LAST_WORD;
+        if (number > limit) throw bad(whole, `the last ${isBit ? "bit" : "word"} address is 0x${hex(limit)}`);
+        const address = bit === void 0 ? number : number * 16 + bitOf(bit, whole);
+        return { kind, address, row: null, raw: true };
+      }
+      function bitOf(digits, whole) {
+        if (Number(digits) > 15) throw new PlcError("BAD_BIT", { address: whole, bit: Number(digits) });
+        return Number(digits);
+      }
+      function finish({ kind, address, row, raw }, count, areas) {
+        const place = raw ? covering({ kind, address, count }, areas) : row;
+        const last = address + count - 1;
+        const through = kind === "bit" && (last > LAST_BIT || !raw && row.as === "words");
+        const result = {
+          kind,
+          address,
+          count,
+          area: place.area,
+          raw,
+          text: raw ? rawText(kind, address, count) : areaText(kind, address, count, row),
+          writable: place.writable && !through,
+          certainty: place.certainty
+        };
+        if (through) result.throughWord = { address: address >> 4, bit: address & 15, writable: place.writable };
+        return result;
+      }
+      function covering({ kind, address, count }, areas) {
+        const first = kind === "bit" ? address >> 4 : address;
+        const last = kind === "bit" ? address + count - 1 >> 4 : address + count - 1;
+        const rows = [];
+        for (let word = first; word <= last; ) {
+          const row = areas.at(word);
+          if (!row) return { area: null, writable: false, certainty: "unconfirmed" };
+          rows.push(row);
+          word = row.base + row.words;
+        }
+        const certainty = ["unconfirmed", "likely", "certain"].find((each) => rows.some((row) => row.certainty === each));
+        return { area: rows.length === 1 ? rows[0].area : null, writable: rows.every((row) => row.writable), certainty };
+      }
+      function rawText(kind, address, count) {
+        const one = (at) => kind === "word" ? `@0x${hex(at)}` : `@0x${hex(at >> 4)}.${at & 15}`;
+        return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
+      }
+      function areaText(kind, address, count, row) {
+        const one = (at) => {
+          if (kind === "word") return `${row.area}${at - row.base}`;
+          return row.as === "bits" ? `${row.area}${at - row.base * 16}` : `${row.area}${(at >> 4) - row.base}.${at & 15}`;
+        };
+        return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
+      }
+      function formatAddress({ kind, address, count = 1 }, areas = STANDARD) {
+        checkPlace(kind, address, count);
+        const last = address + count - 1;
+        const row = areas.at(kind === "bit" ? address >> 4 : address);
+        const inside = row && areas.at(kind === "bit" ? last >> 4 : last) === row;
+        if (!inside || kind === "word" && row.as === "bits") return rawText(kind, address, count);
+        return areaText(kind, address, count, row);
+      }
+      function checkPlace(kind, address, count) {
+        const limit = kind === "bit" ? LAST_WORD * 16 + 15 : LAST_WORD;
+        const known = kind === "bit" || kind === "word";
+        if (known && Number.isInteger(address) && Number.isInteger(count) && address >= 0 && count >= 1) {
+          if (address + count - 1 <= limit) return;
+        }
+        throw bad(String(address), `no ${kind} has this absolute address`);
+      }
+      function describeAddress(place, { steps = 2, write = false } = {}) {
+        const words = place.kind === "word" || place.throughWord !== void 0;
+        const row = functionOf(`${write ? "write" : "read"}${words ? "Words" : "Bits"}`);
+        const code = hex(queryCode(row, steps)).slice(2);
+        const last = place.address + place.count - 1;
+        if (!words) return `function ${code}, ${span("bit", place.address, last)}`;
+        const first = place.throughWord ? place.throughWord.address : place.address;
+        const end = place.throughWord ? last >> 4 : last;
+        const decimal = first === end ? `(${first})` : `(${first}–${end})`;
+        const bit = !place.throughWord ? "" : place.count === 1 ? `, bit ${place.throughWord.bit}` : `, ${place.count} bits`;
+        return `function ${code}, ${span("word", first, end)} ${decimal}${bit}`;
+      }
+      var span = (unit, first, last) => first === last ? `${unit} address ${hex(first)}h` : `${unit} addresses ${hex(first)}h–${hex(last)}h`;
+      var bad = (address, reason) => new PlcError("BAD_ADDRESS", { address, reason });
+      module.exports = { parseAddress, formatAddress, describeAddress };
+    }
+  });
+
+  // lib/tag/convert.js
+  var require_convert = __commonJS({
+    "lib/tag/convert.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var NUMBER = /^[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?$/i;
+      var HEX = /^0x[0-9a-f]+$/i;
+      var BOOLEANS = /* @__PURE__ */ new Map([
+        ["true", true],
+        ["on", true],
+        ["1", true],
+        ["false", false],
+        ["off", false],
+        ["0", false]
+      ]);
+      var absurdity = (value) => {
+        if (value === null || value === void 0) return "it is empty";
+        if (typeof value === "string" && value.trim() === "") return "it is empty";
+        if (typeof value === "number" && !Number.isFinite(value)) return "it is not a finite number";
+        return null;
+      };
+      var refuse = (item, value, reason) => new PlcError("BAD_VALUE", { item, value, reason });
+      var toNumber = (value, item) => {
+        const absurd = absurdity(value);
+        if (absurd) throw refuse(item, value, absurd);
+        if (typeof value === "number") return value;
+        if (typeof value !== "string") throw refuse(item, value, "a number is needed");
+        const text = value.trim();
+        if (!NUMBER.test(text) && !HEX.test(text)) throw refuse(item, value, "it is not a number");
+        const number = Number(text);
+        if (!Number.isFinite(number)) throw refuse(item, value, "it is not a finite number");
+        return number;
+      };
+      var toBoolean = (value, item) => {
+        if (typeof value === "boolean") return value;
+        const absurd = absurdity(value);
+        if (absurd) throw refuse(item, value, absurd);
+        const known = typeof value === "number" || typeof value === "string" ? BOOLEANS.get(String(value).trim().toLowerCase()) : void 0;
+        if (known === void 0) throw refuse(item, value, "a bit takes true, false, on, off, 1 or 0");
+        return known;
+      };
+      var toText = (value, item, most) => {
+        const absurd = absurdity(value);
+        if (absurd && value !== "") throw refuse(item, value, absurd);
+        if (typeof value !== "string" && typeof value !== "number") throw refuse(item, value, "a text is needed");
+        const text = String(value);
+        if (text.length > most) throw refuse(item, value, `it has ${text.length} characters, ${most} fit`);
+        for (const character of text) {
+          if (
+            /** @type {number} */
+            character.codePointAt(0) > 255
+          ) {
+            throw refuse(item, value, `the character ${character} does not fit into one byte`);
+          }
+        }
+        return text;
+      };
+      module.exports = { absurdity, toBoolean, toNumber, toText };
+    }
+  });
+
+  // lib/tag/types.js
+  var require_types = __commonJS({
+    "lib/tag/types.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { toBoolean, toNumber, toText } = require_convert();
+      var MOST_STRING = 256;
+      var viewOf = (words, order) => {
+        const view = new DataView(new ArrayBuffer(words.length * 2));
+        const inOrder = order === "high" ? [...words].reverse() : words;
+        inOrder.forEach((word, index) => view.setUint16(index * 2, word, true));
+        return view;
+      };
+      var wordsOf = (view, order) => {
+        const words = [];
+        for (let at = 0; at < view.byteLength; at += 2) words.push(view.getUint16(at, true));
+        return order === "high" ? words.reverse() : words;
+      };
+      var bcdValue = (raw, digits) => {
+        let value = 0;
+        for (let place = digits - 1; place >= 0; place--) {
+          const digit = Math.floor(raw / 16 ** place) % 16;
+          if (digit > 9) return { bad: `${raw.toString(16).toUpperCase().padStart(digits, "0")}h is not BCD` };
+          value = value * 10 + digit;
+        }
+        return { value };
+      };
+      var bcdRaw = (value) => parseInt(String(value), 16);
+      var float = (number) => {
+        if (Number.isFinite(number)) return { value: number };
+        return { bad: Number.isNaN(number) ? "the bits are not a number (NaN)" : "the bits mean infinity" };
+      };
+      var MOST_FLOAT = 34028234663852886e22;
+      var NUMBERS = [
+        // name, words, least, most, whole, read, write
+        ["int16", 1, -32768, 32767, true, (v) => ({ value: v.getInt16(0, true) }), (v, x) => v.setInt16(0, x, true)],
+        ["uint16", 1, 0, 65535, true, (v) => ({ value: v.getUint16(0, true) }), (v, x) => v.setUint16(0, x, true)],
+        ["int32", 2, -2147483648, 2147483647, true, (v) => ({ value: v.getInt32(0, true) }), (v, x) => v.setInt32(0, x, true)],
+        ["uint32", 2, 0, 4294967295, true, (v) => ({ value: v.getUint32(0, true) }), (v, x) => v.setUint32(0, x, true)],
+        ["float32", 2, -MOST_FLOAT, MOST_FLOAT, false, (v) => float(v.getFloat32(0, true)), (v, x) => v.setFloat32(0, x, true)],
+        ["bcd16", 1, 0, 9999, true, (v) => bcdValue(v.getUint16(0, true), 4), (v, x) => v.setUint16(0, bcdRaw(x), true)],
+        ["bcd32", 2, 0, 99999999, true, (v) => bcdValue(v.getUint32(0, true), 8), (v, x) => v.setUint32(0, bcdRaw(x), true)]
+      ];
+      var round = (number) => number < 0 ? -Math.round(-number) || 0 : Math.round(number);
+      var numberType = ([name, words, least, most, integer, read, write]) => {
+        const encode = (value, { item = name, wordOrder, rounds = false } = {}) => {
+          const given = toNumber(value, item);
+          const number = integer && rounds ? round(given) : given;
+          if (integer && !Number.isInteger(number)) {
+            throw new PlcError("BAD_VALUE", { item, value, reason: `${name} takes whole numbers` });
+          }
+          if (number < least || number > most) throw new PlcError("VALUE_OUT_OF_RANGE", { item, value, least, most });
+          const view = new DataView(new ArrayBuffer(words * 2));
+          write(view, number);
+          return wordsOf(view, wordOrder);
+        };
+        const decode = (raw, order = {}) => read(viewOf(raw, order.wordOrder));
+        return Object.freeze({ name, kind: "word", words, least, most, numeric: true, integer, decode, encode });
+      };
+      var BOOL = Object.freeze({
+        name: "bool",
+        kind: "bit",
+        words: 1,
+        numeric: false,
+        integer: false,
+        decode: (raw) => ({ value: raw[0] }),
+        encode: (value, { item = "bool" } = {}) => [toBoolean(value, item)]
+      });
+      var stringType = (length) => {
+        const words = Math.ceil(length / 2);
+        const decode = (raw, { byteOrder } = {}) => {
+          let text = "";
+          for (let at = 0; at < length; at++) {
+            const high = at % 2 === (byteOrder === "high" ? 0 : 1);
+            const byte = high ? raw[at >> 1] >> 8 : raw[at >> 1] & 255;
+            if (byte === 0) break;
+            text += String.fromCharCode(byte);
+          }
+          return { value: text };
+        };
+        const encode = (value, { item = "string", byteOrder } = {}) => {
+          const text = toText(value, item, length);
+          const raw = new Array(words).fill(0);
+          for (let at = 0; at < text.length; at++) {
+            const high = at % 2 === (byteOrder === "high" ? 0 : 1);
+            raw[at >> 1] |= text.charCodeAt(at) << (high ? 8 : 0);
+          }
+          return raw;
+        };
+        return Object.freeze({
+          name: `string[${length}]`,
+          kind: "word",
+          words,
+          numeric: false,
+          integer: false,
+          decode,
+          encode
+        });
+      };
+      var TYPES = new Map([["bool", BOOL], ...NUMBERS.map((row) => [row[0], numberType(row)])]);
+      var TYPE_NAMES = Object.freeze([...TYPES.keys(), "string[n]"]);
+      var parseType = (text) => {
+        const name = String(text).trim().toLowerCase();
+        const known = TYPES.get(name);
+        if (known) return known;
+        const string = /^string\s*\[\s*(\d+)\s*\]$/.exec(name);
+        const length = string ? Number(string[1]) : 0;
+        if (length >= 1 && length <= MOST_STRING) return stringType(length);
+        const reason = name.startsWith("string") ? `write string[n] with n = 1 to ${MOST_STRING} bytes` : "there is no such type";
+        throw new PlcError("BAD_TYPE", { type: String(text), reason, known: TYPE_NAMES.join(", ") });
+      };
+      module.exports = { TYPE_NAMES, parseType, round };
+    }
+  });
+
+  // lib/tag/item.js
+  var require_item = __commonJS({
+    "lib/tag/item.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { parseType } = require_types();
+      var TYPED = /^(.*?)\s*:\s*([a-z]\w*\s*(?:\[[^\]]*\])?)$/i;
+      var splitType = (text) => {
+        const typed = TYPED.exec(text);
+        return typed ? [typed[1], typed[2]] : [text, ""];
+      };
+      var keyOf = (text) => {
+        const key = text.replace(/\.\./g, "_").replace(/\W+/g, "_");
+        return /^[A-Za-z_]/.test(key) ? key : `_${key}`;
+      };
+      var typeFor = (text, address, typeText) => {
+        const type = parseType(typeText || (address.kind === "bit" ? "bool" : "uint16"));
+        if (type.kind === address.kind) return type;
+        const reason = address.kind === "bit" ? `${text} is a bit, which is bool` : `${text} is a word, bool needs a bit`;
+        throw new PlcError("BAD_TYPE", { type: type.name, reason, known: address.kind === "bit" ? "bool" : "all but bool" });
+      };
+      var countOf = (text, { address, type, notation }) => {
+        const range = address.range ?? address.count > 1;
+        if (range && address.count % type.words !== 0) {
+          throw new PlcError("BAD_TYPE", {
+            type: type.name,
+            reason: `${text} has ${address.count} words, which is no multiple of ${type.words}`,
+            known: `ranges of a multiple of ${type.words} words`
+          });
+        }
+        const end = address.address + (range ? address.count : type.words) - 1;
+        if (end > notation.last(address)) {
+          throw new PlcError("OUT_OF_AREA", {
+            address: text,
+            area: address.text,
+            range: `${notation.last(address) - address.address + 1} words from there, ${type.name} takes ${type.words}`
+          });
+        }
+        return { range, count: range ? address.count / type.words : 1 };
+      };
+      var elementsOf = (item, notation) => {
+        if (!item.range) return [{ name: item.name, text: item.tag ? item.name : item.addressText }];
+        return Array.from({ length: item.count }, (_, index) => {
+          const text = notation.format({ kind: item.kind, address: item.address + index * item.type.words });
+          return { name: item.tag ? `${item.name}_${index}` : keyOf(text), text };
+        });
+      };
+      var tagged = (tag, notation) => ({
+        wordOrder: tag?.wordOrder || notation.wordOrder || "low",
+        byteOrder: tag?.byteOrder || notation.byteOrder || "low",
+        tag: tag ?? null,
+        label: tag ? tag.label : "",
+        unit: tag ? tag.unit : ""
+      });
+      var parseExpression = (text, notation, { tag } = {}) => {
+        const [addressText, written] = splitType(text.trim());
+        const address = notation.parse(addressText.trim());
+        const type = typeFor(text, address, written || tag?.type);
+        const item = {
+          text,
+          name: tag ? tag.name : keyOf(address.text),
+          kind: address.kind,
+          address: address.address,
+          addressText: address.text,
+          ...countOf(text, { address, type, notation }),
+          type,
+          throughWord: address.kind === "bit" && Boolean(notation.throughWord?.(address)),
+          ...tagged(tag, notation),
+          elements: []
+        };
+        item.elements = elementsOf(item, notation);
+        return item;
+      };
+      var parseItem = (text, notation) => {
+        if (typeof text !== "string" || text.trim() === "") {
+          throw new PlcError("BAD_ITEMS", { reason: "an item is a text such as M0 or a tag name" });
+        }
+        const name = text.trim();
+        const tag = notation.tags?.get(name);
+        return tag ? { ...parseExpression(tag.address, notation, { tag }), text: name } : parseExpression(name, notation);
+      };
+      var meaning = (item) => `${item.tag ? "tag " : ""}${item.kind} ${item.address} ${item.count} ${item.type.name}`;
+      var clashes = (items) => {
+        const meanings = /* @__PURE__ */ new Map();
+        for (const item of items) {
+          const known = meanings.get(item.name) ?? /* @__PURE__ */ new Set();
+          meanings.set(item.name, known.add(meaning(item)));
+        }
+        return new Set([...meanings].filter(([, known]) => known.size > 1).map(([name]) => name));
+      };
+      var distinctNames = (items) => {
+        const shared = clashes(items);
+        if (shared.size === 0) return items;
+        const plain = (item) => item.tag || item.type.name === "uint16" || item.type.name === "bool" || !shared.has(item.name);
+        const suffix = (item) => `_${keyOf(item.type.name).replace(/_$/, "")}`;
+        const renamed = items.map(
+          (item) => plain(item) ? item : {
+            ...item,
+            name: item.name + suffix(item),
+            elements: item.elements.map((element) => ({ ...element, name: element.name + suffix(item) }))
+          }
+        );
+        const [still] = clashes(renamed);
+        if (still === void 0) return renamed;
+        const both = renamed.filter((item) => item.name === still).map((item) => item.text);
+        throw new PlcError("BAD_ITEMS", { reason: `${both.join(" and ")} would both be called ${still}` });
+      };
+      module.exports = { distinctNames, keyOf, parseExpression, parseItem, splitType };
+    }
+  });
+
+  // lib/tag/tags.js
+  var require_tags = __commonJS({
+    "lib/tag/tags.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { parseExpression, splitType } = require_item();
+      var { parseType } = require_types();
+      var FIELDS = Object.freeze([
+        ...["name", "label", "address", "type", "wordOrder", "byteOrder", "scale", "offset", "unit", "deadband"],
+        ...["writable", "min", "max"]
+      ]);
+      var NAME = /^[A-Za-z_]\w*$/;
+      var RESERVED = new Set(Object.getOwnPropertyNames(Object.prototype).concat("prototype"));
+      var MOST_TAGS = 1e4;
+      var bad = (name, reason) => new PlcError("BAD_TAG", { name, reason });
+      var textOf = (row, field) => {
+        const value = Object.hasOwn(row, field) ? row[field] : void 0;
+        return value === void 0 || value === null ? "" : String(value).trim();
+      };
+      var numberOf = (row, field, { name, fallback }) => {
+        const text = textOf(row, field);
+        if (text === "") return fallback;
+        const number = Number(text);
+        if (!Number.isFinite(number)) throw bad(name, `${field} is "${text}", not a number`);
+        return number;
+      };
+      var YES = /* @__PURE__ */ new Set(["true", "1", "yes", "x", "on"]);
+      var NO = /* @__PURE__ */ new Set(["", "false", "0", "no", "off"]);
+      var booleanOf = (row, field, name) => {
+        const text = textOf(row, field).toLowerCase();
+        if (YES.has(text)) return true;
+        if (NO.has(text)) return false;
+        throw bad(name, `${field} is "${text}", write true or false`);
+      };
+      var orderOf = (row, field, name) => {
+        const text = textOf(row, field).toLowerCase();
+        if (text === "" || text === "low" || text === "high") return (
+          /** @type {''|'low'|'high'} */
+          text
+        );
+        throw bad(name, `${field} is "${text}", write low or high`);
+      };
+      var readRow = (row, place) => {
+        if (!row || typeof row !== "object" || Array.isArray(row)) throw bad(place, "it is not a row of fields");
+        const name = textOf(row, "name");
+        if (!NAME.test(name)) throw bad(name || place, "a name is made of letters, digits and _, and starts with no digit");
+        if (RESERVED.has(name)) throw bad(name, "this name is reserved");
+        return {
+          name,
+          label: textOf(row, "label"),
+          address: textOf(row, "address"),
+          type: textOf(row, "type").toLowerCase(),
+          wordOrder: orderOf(row, "wordOrder", name),
+          byteOrder: orderOf(row, "byteOrder", name),
+          scale: numberOf(row, "scale", { name, fallback: 1 }),
+          offset: numberOf(row, "offset", { name, fallback: 0 }),
+          unit: textOf(row, "unit"),
+          deadband: numberOf(row, "deadband", { name, fallback: 0 }),
+          writable: booleanOf(row, "writable", name),
+          min: numberOf(row, "min", { name, fallback: null }),
+          max: numberOf(row, "max", { name, fallback: null })
+        };
+      };
+      var checkNumbers = (tag, type) => {
+        const { name, scale, offset, deadband, min, max } = tag;
+        if (scale === 0) throw bad(name, "scale is 0");
+        if (deadband < 0) throw bad(name, "deadband is negative");
+        if (min !== null && max !== null && min > max) throw bad(name, `min ${min} is larger than max ${max}`);
+        if (type.numeric) return;
+        if (scale !== 1 || offset !== 0) throw bad(name, `${type.name} cannot be scaled`);
+        if (min !== null || max !== null) throw bad(name, `${type.name} has no min and max`);
+      };
+      var checkName = (tag, item, notation) => {
+        const other = attempt(() => notation.parse(tag.name));
+        if (other && (other.kind !== item.kind || other.address !== item.address)) {
+          throw bad(tag.name, `its name is the address ${other.text}, but it stands for ${tag.address}`);
+        }
+      };
+      var attempt = (make) => {
+        try {
+          return make();
+        } catch {
+          return null;
+        }
+      };
+      var checkTag = (tag, notation) => {
+        const [, written] = splitType(tag.address);
+        try {
+          if (written && tag.type && parseType(written).name !== parseType(tag.type).name) {
+            throw bad(tag.name, `its address says ${written}, its type ${tag.type}`);
+          }
+          const item = parseExpression(tag.address, notation, { tag });
+          checkNumbers(tag, item.type);
+          checkName(tag, item, notation);
+        } catch (error) {
+          throw error.code === "BAD_TAG" ? error : new PlcError("BAD_TAG", { name: tag.name, reason: error.message, cause: error });
+        }
+      };
+      var readTags = (rows, notation) => {
+        const tags = /* @__PURE__ */ new Map();
+        if (rows === void 0 || rows === null || rows === "") return tags;
+        if (!Array.isArray(rows)) throw bad("table", "it is not an array of tags");
+        if (rows.length > MOST_TAGS) throw new PlcError("TOO_MANY", { count: rows.length, unit: "tags", most: MOST_TAGS });
+        rows.forEach((row, index) => {
+          const tag = readRow(row, `in row ${index + 1}`);
+          if (tags.has(tag.name)) throw bad(tag.name, `row ${index + 1} has the same name again`);
+          checkTag(tag, notation);
+          tags.set(tag.name, Object.freeze(tag));
+        });
+        return tags;
+      };
+      module.exports = { FIELDS, readTags };
+    }
+  });
+
+  // scripts/editor/model.js
+  var require_model = __commonJS({
+    "scripts/editor/model.js"(exports, module) {
+      "use strict";
+      var { areaMap } = require_areas();
+      var { parseAddress, formatAddress } = require_address();
+      var { functionOf } = require_functions();
+      var { parseItem } = require_item();
+      var { readTags } = require_tags();
+      var { t } = require_texts();
+      var lastOf = (areas, address) => {
+        const row = address.raw ? void 0 : areas.get(address.area);
+        if (!row) return 65535;
+        return address.kind === "bit" ? (row.base + row.words) * 16 - 1 : row.base + row.words - 1;
+      };
+      var notationOf = (areaRows) => {
+        const areas = areaMap(areaRows || []);
+        return {
+          areas,
+          parse: (text) => parseAddress(text, areas),
+          format: (place) => formatAddress(place, areas),
+          last: (address) => lastOf(areas, address),
+          throughWord: (address) => Boolean(address.throughWord),
+          tags: /* @__PURE__ */ new Map()
+        };
+      };
+      var attempt = (make, otherwise) => {
+        try {
+          return make();
+        } catch {
+          return otherwise;
+        }
+      };
+      var notationWithTags = (plc) => {
+        const notation = attempt(() => notationOf(plc && plc.areas), notationOf([]));
+        notation.tags = attempt(() => readTags(plc && plc.tags, notation), /* @__PURE__ */ new Map());
+        return notation;
+      };
+      var hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, "0");
+      var describe = (item, { steps = 2, write = false } = {}) => {
+        const bits = item.kind === "bit" && !item.throughWord;
+        const row = functionOf((write ? "write" : "read") + (bits ? "Bits" : "Words"));
+        const code = hex(String(steps) === "4" ? row.four : row.two, 2);
+        const address = hex(item.throughWord ? Math.floor(item.address / 16) : item.address, 4);
+        const words = item.kind === "word" ? item.count * item.type.words : item.count;
+        const key = `editor.${words > 1 ? bits ? "bits" : "words" : bits ? "bit" : item.throughWord ? "through" : "word"}`;
+        return t("editor.goesOut", { code, address, what: t(key, { count: words, number: words }) });
+      };
+      var unsure = (item, notation) => {
+        const address = attempt(() => notation.parse(notation.format(item)), null);
+        return Boolean(address) && address.certainty === "unconfirmed";
+      };
+      module.exports = { notationOf, notationWithTags, describe, unsure, parseItem, readTags, attempt, hex };
+    }
+  });
+
+  // scripts/editor/check.js
+  var require_check = __commonJS({
+    "scripts/editor/check.js"(exports, module) {
+      "use strict";
+      var { PROPERTIES, readProperty, allowed, applies } = require_properties();
+      var { t, errorText } = require_texts();
+      var { notationOf, notationWithTags, parseItem, readTags } = require_model();
+      var edited = { id: null, prefix: "node-input-" };
+      var open = (node, prefix) => Object.assign(edited, { id: node.id, prefix });
+      var done = () => {
+        edited.id = null;
+      };
+      var current = (node, name) => {
+        const field = edited.id === node.id ? $(`#${edited.prefix}${name}`) : $();
+        if (field.length === 0) return node[name];
+        return field.is(":checkbox") ? field.prop("checked") : field.val();
+      };
+      var view = (node) => new Proxy({}, { get: (_, name) => current(node, String(name)) });
+      var isVariable = (value) => typeof value === "string" && /^\s*\$\{[^}]+\}\s*$/.test(value);
+      var sameStation = (node, station) => {
+        const line = current(node, "line");
+        let twin = null;
+        RED.nodes.eachConfig((other) => {
+          const known = other.type === "nx-config" && other.id !== node.id && other.line === line && !other.d;
+          if (known && String(other.station) === String(station).trim()) twin = other;
+          return true;
+        });
+        return twin;
+      };
+      var MORE = {
+        "nx-config": {
+          station(node, value) {
+            const twin = sameStation(node, value);
+            return twin ? t("problem.sameStation", { other: twin.name || twin.id }) : true;
+          },
+          masterIds: (_node, value) => /^\s*$|^[\s0-9A-Fa-fxX$,.\-–]+$/.test(value) ? true : t("problem.masterIds"),
+          writableRanges(node, value) {
+            const notation = notationWithTags(view(node));
+            String(value || "").split(/[,;\n]/).filter((part) => part.trim()).forEach((part) => notation.parse(part.trim()));
+            return true;
+          },
+          areas: (_node, value) => Boolean(notationOf(value)),
+          tags(node, value) {
+            readTags(value, notationOf(node.areas));
+            return true;
+          }
+        },
+        "nx-read": {
+          items(node, value) {
+            if (current(node, "itemsType") === "msg") return true;
+            if (!value || value.length === 0) return t("problem.noItems");
+            const notation = notationWithTags(RED.nodes.node(current(node, "plc")));
+            value.filter((text) => !isVariable(text)).forEach((text) => parseItem(text, notation));
+            return true;
+          }
+        },
+        "nx-write": {
+          target(node, value) {
+            if (!String(value || "").trim()) return true;
+            const plc = RED.nodes.node(current(node, "plc"));
+            if (!plc) return true;
+            parseItem(value, notationWithTags(plc));
+            return plc.access === "write" ? true : t("problem.readOnly", { plc: plc.name || plc.id });
+          }
+        }
+      };
+      var isEmpty = (value) => value === void 0 || value === null || value === "";
+      var verdict = (type, { name, node, value }) => {
+        const row = PROPERTIES[type][name];
+        if (isVariable(value)) return true;
+        const { problem } = readProperty(row, value);
+        if (problem) return t(`problem.${problem}`, { allowed: allowed(row) });
+        const more = MORE[type] && MORE[type][name];
+        return more && (row.kind === "list" || !isEmpty(value)) ? more(node, value) : true;
+      };
+      var check = (type, name) => (
+        // two declared parameters tell the editor that a reason may come as a text
+        function(value, _options) {
+          try {
+            if (!applies(type, name, view(this))) return true;
+            return verdict(type, { name, node: this, value });
+          } catch (error) {
+            return errorText(error);
+          }
+        }
+      );
+      module.exports = { check, current, open, done, isVariable, view };
+    }
+  });
+
+  // scripts/editor/widgets.js
+  var require_widgets = __commonJS({
+    "scripts/editor/widgets.js"(exports, module) {
+      "use strict";
+      var { t } = require_texts();
+      var tabs = (id, pages) => {
+        const widget = RED.tabs.create({
+          id,
+          onchange(tab) {
+            $(`#${id}-content`).children().hide();
+            $(`#${tab.id}`).show();
+            $(`#${tab.id}`).trigger("nxline-shown");
+          }
+        });
+        pages.forEach(([page, label]) => widget.addTab({ id: page, label }));
+        return widget;
+      };
+      var keepUnknown = (field, value) => {
+        if (value === void 0 || value === null || value === "") return;
+        const known = field.find("option").filter((_, option) => option.value === String(value)).length > 0;
+        if (!known) field.append($("<option>").attr("value", value).text(value));
+        field.val(String(value));
+      };
+      var fillDefaults = (node, prefix) => {
+        for (const [name, { value }] of Object.entries(node._def.defaults)) {
+          const field = $(`#${prefix}${name}`);
+          if (field.length === 0) continue;
+          if (node[name] === void 0 && value !== "" && !Array.isArray(value)) {
+            if (field.is(":checkbox")) field.prop("checked", value);
+            else field.val(String(value));
+          }
+          if (field.is("select") && !field.prop("multiple") && !name.match(/^(line|plc)$/)) {
+            keepUnknown(field, node[name] === void 0 ? value : node[name]);
+          }
+        }
+      };
+      var suggest = (field, offers) => field.autoComplete({
+        minLength: 0,
+        search(value, answer) {
+          const wanted = value.trim().toLowerCase();
+          const found = offers().filter((offer) => `${offer.value} ${offer.hint || ""}`.toLowerCase().includes(wanted));
+          answer(
+            found.slice(0, 50).map((offer) => ({
+              value: offer.value,
+              label: $("<span>").text(offer.value).append(
+                $("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(offer.hint || "")
+              )
+            }))
+          );
+        }
+      });
+      var copyable = (text) => $('<a href="#" class="nxline-copy">').css({ fontFamily: "var(--red-ui-monospace-font)", whiteSpace: "nowrap" }).attr("title", t("editor.copy")).text(text).prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>').on("click", function(event) {
+        event.preventDefault();
+        RED.clipboard.copyText(text, $(this));
+      });
+      var note = () => $('<div class="nxline-note">').css({
+        fontSize: "12px",
+        lineHeight: "16px",
+        minHeight: "16px",
+        color: "var(--red-ui-secondary-text-color)"
+      });
+      var say = (block, text, bad = false) => block.empty().text(text).css("color", bad ? "var(--red-ui-text-color-error)" : "var(--red-ui-secondary-text-color)");
+      var cell = (name, value, { width = "80px", grow = false } = {}) => $('<input type="text">').addClass(`nxline-${name}`).attr({ placeholder: t(`column.${name}`), title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 }).val(value === void 0 || value === null ? "" : String(value));
+      var pick = (name, value, options) => {
+        const field = $("<select>").addClass(`nxline-${name}`).attr({ title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width: "auto", margin: 0 });
+        options.forEach(([key, label]) => field.append($("<option>").attr("value", key).text(label)));
+        keepUnknown(field, value);
+        return field;
+      };
+      var tick = (name, value) => {
+        const box = $('<input type="checkbox">').addClass(`nxline-${name}`).css({ width: "auto", margin: "0 4px 0 0" }).prop("checked", Boolean(value) && value !== "false");
+        const label = $("<label>").css({ width: "auto", margin: 0, display: "inline-flex", alignItems: "center", whiteSpace: "nowrap" }).attr("title", t(`tooltip.${name}`)).append(box).append(document.createTextNode(t(`column.${name}`)));
+        return { box, label };
+      };
+      var flex = (...children) => $("<div>").css({ display: "flex", gap: "4px", alignItems: "center", marginBottom: "3px" }).append(children);
+      module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex };
+    }
+  });
+
+  // scripts/editor/line.js
+  var require_line = __commonJS({
+    "scripts/editor/line.js"(exports, module) {
+      "use strict";
+      var { current, open } = require_check();
+      var { fillDefaults, suggest, tabs } = require_widgets();
+      var { t } = require_texts();
+      var PREFIX = "node-config-input-";
+      var SPEEDS = ["1200", "2400", "4800", "9600", "19200", "38400", "57600", "115200"];
+      var lineLabel = (line) => {
+        if (line.transport === "tcp") return line.host ? `${line.host}:${line.port}` : t("editor.newLine");
+        if (line.transport === "simulated") return t("editor.simulatedLine");
+        return line.path || t("editor.newLine");
+      };
+      var loadPorts = () => $.getJSON("plc-line/ports").then(
+        (answer) => answer.ports,
+        () => []
+      );
+      var showMenu = (button, ports) => {
+        const field = $(`#${PREFIX}path`);
+        const options = ports.map((port) => ({
+          label: port.name === port.path ? port.path : `${port.name} — ${port.path}`,
+          onselect: () => field.val(port.path).trigger("change")
+        }));
+        if (options.length === 0) options.push({ label: t("editor.noPorts"), disabled: true, onselect: () => {
+        } });
+        const menu = RED.popover.menu({ options });
+        menu.show({ target: button, align: "left", offset: [button.outerWidth() - 2, -1], dispose: true });
+      };
+      var show = (transport) => {
+        $(".nxline-serial").toggle(transport === "serial");
+        $(".nxline-tcp").toggle(transport === "tcp");
+        $(".nxline-simulated").toggle(transport === "simulated");
+        $(".nxline-real").toggle(transport !== "simulated");
+      };
+      var editLine = (node) => {
+        open(node, PREFIX);
+        fillDefaults(node, PREFIX);
+        tabs("nxline-line-tabs", [
+          ["nxline-line-connection", t("tab.connection")],
+          ["nxline-line-details", t("tab.details")]
+        ]);
+        let ports = [];
+        const refresh = () => loadPorts().then((found) => {
+          ports = found;
+          return found;
+        });
+        suggest($(`#${PREFIX}path`), () => ports.map((port) => ({ value: port.path, hint: port.name })));
+        suggest($(`#${PREFIX}baudRate`), () => SPEEDS.map((value) => ({ value })));
+        const button = $("#nxline-line-ports").attr("title", t("editor.listPorts"));
+        button.on("click", () => refresh().then((found) => showMenu(button, found)));
+        refresh();
+        $(`#${PREFIX}transport`).on("change", function() {
+          show($(this).val());
+          $(`#${PREFIX}path, #${PREFIX}host, #${PREFIX}port`).trigger("change");
+        }).trigger("change");
+        show(current(node, "transport"));
+      };
+      module.exports = { editLine, lineLabel };
+    }
+  });
+
+  // lib/tag/csv.js
+  var require_csv = __commonJS({
+    "lib/tag/csv.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { FIELDS } = require_tags();
+      var SEPARATORS = [",", ";", "	"];
+      var separatorOf = (text) => {
+        const line = text.replace(/"(?:[^"]|"")*"/g, "").split(/\r\n|\r|\n/, 1)[0];
+        const counts = SEPARATORS.map((separator) => line.split(separator).length);
+        return SEPARATORS[counts.indexOf(Math.max(...counts))];
+      };
+      var unquote = (cell) => cell.startsWith('"') ? cell.slice(1, -1).replaceAll('""', '"') : cell;
+      var parseCells = (text, separator) => {
+        const other = separator === "	" ? "\\t" : separator;
+        const cell = new RegExp(`("(?:[^"]|"")*"|[^"${other}\\r\\n][^${other}\\r\\n]*|)(${other}|\\r\\n|\\r|\\n|$)`, "y");
+        const rows = [[]];
+        let line = 1;
+        while (cell.lastIndex < text.length || rows.at(-1)?.length) {
+          const from = cell.lastIndex;
+          const found = cell.exec(text);
+          if (!found)
+            throw new PlcError("BAD_TAG", { name: `in line ${line}`, reason: "a quote is not closed, or text follows it" });
+          rows[rows.length - 1].push(unquote(found[1]));
+          line += (found[0].match(/\r\n|\r|\n/g) || []).length;
+          if (found[2] === "") break;
+          if (found[2] !== separator) rows.push([]);
+          if (cell.lastIndex === from) break;
+        }
+        return rows.filter((row) => row.some((value) => value.trim() !== ""));
+      };
+      var tagsFromCsv = (text) => {
+        const body = String(text).replace(/^\uFEFF/, "");
+        const separator = separatorOf(body);
+        const [head = [], ...rows] = parseCells(body, separator);
+        const columns = head.map((title) => FIELDS.find((field) => field.toLowerCase() === title.trim().toLowerCase()));
+        for (const needed of ["name", "address"]) {
+          if (!columns.includes(needed))
+            throw new PlcError("BAD_TAG", { name: "table", reason: `the column ${needed} is missing` });
+        }
+        const decimal = (value) => separator === "," ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*)$/, "$1.$2");
+        const numeric = /* @__PURE__ */ new Set(["scale", "offset", "deadband", "min", "max"]);
+        return rows.map((cells) => {
+          const row = {};
+          columns.forEach((field, index) => {
+            if (field) row[field] = numeric.has(field) ? decimal(cells[index] ?? "") : cells[index] ?? "";
+          });
+          return row;
+        });
+      };
+      var cellOf = (value) => {
+        const text = value === null || value === void 0 ? "" : String(value);
+        return /[",;\t\r\n]|^\s|\s$/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+      };
+      var tagsToCsv = (tags, { separator = "," } = {}) => {
+        const lines = [FIELDS, ...Array.from(tags, (tag) => FIELDS.map((field) => tag[field]))];
+        return `\uFEFF${lines.map((cells) => cells.map(cellOf).join(separator)).join("\r\n")}\r
+`;
+      };
+      module.exports = { tagsFromCsv, tagsToCsv };
+    }
+  });
+
+  // scripts/editor/table.js
+  var require_table = __commonJS({
+    "scripts/editor/table.js"(exports, module) {
+      "use strict";
+      var { areaMap } = require_areas();
+      var { tagsFromCsv, tagsToCsv } = require_csv();
+      var { parseExpression } = require_item();
+      var { describe, hex, notationOf, readTags, unsure } = require_model();
+      var { cell, flex, note, pick, say, tick } = require_widgets();
+      var { errorText, reasonOf, t } = require_texts();
+      var TYPES = ["", "bool", "uint16", "int16", "uint32", "int32", "float32", "bcd16", "bcd32", "string[8]"];
+      var rowsOf = (list) => list.editableList("items").toArray().map((row) => row.data("nxline").read());
+      var clean = (row) => Object.fromEntries(Object.entries(row).filter(([, value]) => value !== "" && value !== void 0 && value !== false));
+      var tagText = (row, { steps, areas }) => {
+        const notation = notationOf(areas);
+        const tag = [...readTags([row], notation).values()][0];
+        const item = parseExpression(tag.address, notation, { tag });
+        return describe(item, { steps }) + (unsure(item, notation) ? ` · ${t("editor.unconfirmed")}` : "");
+      };
+      var judgeTag = (row, block, context) => {
+        if (!row.name && !row.address) return say(block, t("editor.tagHint"));
+        try {
+          return say(block, tagText(row, context()));
+        } catch (error) {
+          return say(block, reasonOf(error), true);
+        }
+      };
+      var typeField = (value) => {
+        const known = TYPES.map((type) => [type, type || t("editor.byAddress")]);
+        return pick("type", value, known);
+      };
+      var tagFields = (data) => {
+        const writable = tick("writable", data.writable);
+        const order = [
+          ["", t("editor.lowFirst")],
+          ["high", t("editor.highFirst")]
+        ];
+        return {
+          name: cell("tagName", data.name, { width: "24%" }),
+          address: cell("address", data.address, { width: "22%" }),
+          type: typeField(data.type),
+          label: cell("tagLabel", data.label, { grow: true, width: "20%" }),
+          unit: cell("unit", data.unit, { width: "52px" }),
+          scale: cell("scale", data.scale, { width: "58px" }),
+          offset: cell("offset", data.offset, { width: "58px" }),
+          deadband: cell("deadband", data.deadband, { width: "72px" }),
+          wordOrder: pick("wordOrder", data.wordOrder === "low" ? "" : data.wordOrder, order),
+          min: cell("min", data.min, { width: "52px" }),
+          max: cell("max", data.max, { width: "52px" }),
+          writable
+        };
+      };
+      var readFields = (fields, kept) => {
+        const value = (name) => String(fields[name].val() ?? "").trim();
+        const row = { ...kept, writable: fields.writable.box.prop("checked") };
+        for (const name of Object.keys(fields)) if (name !== "writable") row[name] = value(name);
+        return clean(row);
+      };
+      var addTag = (container, data, context) => {
+        const fields = tagFields(data);
+        const message = note();
+        const read = () => readFields(fields, data);
+        const judge = () => judgeTag(read(), message, context);
+        container.append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit)).append(flex(fields.scale, fields.offset, fields.deadband, fields.wordOrder, fields.min, fields.max, fields.writable.label)).append(message).on("input change", judge);
+        container.data("nxline", { read, judge });
+        judge();
+      };
+      var tagTable = (list, tags, context) => {
+        list.editableList({
+          header: $("<div>").css({ padding: "2px 6px", color: "var(--red-ui-secondary-text-color)" }).text(t("editor.tagHeader")),
+          addItem: (container, _index, data) => addTag(container, data, context),
+          addButton: t("editor.addTag"),
+          removable: true,
+          sortable: true,
+          scrollOnAdd: true,
+          height: 300
+        });
+        (tags || []).forEach((tag) => list.editableList("addItem", tag));
+      };
+      var importTags = (list, text, areas) => {
+        const rows = tagsFromCsv(text);
+        readTags(rows, notationOf(areas));
+        const names = new Set(rows.map((row) => row.name.trim()));
+        list.editableList("items").toArray().filter((row) => names.has(row.data("nxline").read().name)).forEach((row) => list.editableList("removeItem", row.data("data")));
+        rows.forEach((row) => list.editableList("addItem", clean(row)));
+        return rows.length;
+      };
+      var download = (name, text) => {
+        const url = URL.createObjectURL(new Blob([text], { type: "text/csv;charset=utf-8" }));
+        const link = $("<a>").attr({ href: url, download: name }).appendTo("body");
+        link[0].click();
+        link.remove();
+        URL.revokeObjectURL(url);
+      };
+      var exportTags = (list, name) => download(`${name || "tags"}.csv`, tagsToCsv(rowsOf(list)));
+      var areaFields = (data) => ({
+        area: cell("area", data.area, { width: "60px" }),
+        base: cell("base", data.base, { width: "80px" }),
+        words: cell("words", data.words, { width: "70px" }),
+        as: pick("as", data.as || "both", [
+          ["both", t("editor.asBoth")],
+          ["bits", t("editor.asBits")],
+          ["words", t("editor.asWords")]
+        ]),
+        note: cell("areaNote", data.note, { grow: true, width: "60px" }),
+        confirmed: tick("confirmed", data.confirmed),
+        remove: tick("remove", data.remove)
+      });
+      var readArea = (fields) => {
+        const value = (name) => String(fields[name].val() ?? "").trim();
+        const area = value("area").toUpperCase();
+        if (fields.remove.box.prop("checked")) return { area, remove: true };
+        const row = { area, base: value("base"), words: value("words"), as: value("as"), note: value("note") };
+        return clean({ ...row, confirmed: fields.confirmed.box.prop("checked") });
+      };
+      var judgeArea = (row, block) => {
+        if (!row.area) return say(block, t("editor.areaHint"));
+        try {
+          const known = areaMap([row]).get(row.area);
+          if (!known) return say(block, t("editor.areaRemoved"));
+          const range = `${hex(known.base, 4)}h..${hex(known.base + known.words - 1, 4)}h`;
+          return say(block, t(known.writable ? "editor.areaWritable" : "editor.areaReadable", { range }));
+        } catch (error) {
+          return say(block, errorText(error), true);
+        }
+      };
+      var addArea = (container, data, changed) => {
+        const fields = areaFields(data);
+        const message = note();
+        const read = () => readArea(fields);
+        const judge = () => {
+          const standard = areaMap().get(read().area);
+          if (standard) {
+            fields.base.attr("placeholder", `0x${hex(standard.base, 4)}`);
+            fields.words.attr("placeholder", standard.words);
+          }
+          judgeArea(read(), message);
+          changed();
+        };
+        container.append(flex(fields.area, fields.base, fields.words, fields.as, fields.note, fields.confirmed.label, fields.remove.label)).append(message).on("input change", judge);
+        container.data("nxline", { read, judge });
+        judge();
+      };
+      var areaTable = (list, areas, changed) => {
+        list.editableList({
+          addItem: (container, _index, data) => addArea(container, data, changed),
+          removeItem: changed,
+          addButton: t("editor.addArea"),
+          removable: true,
+          height: 150
+        });
+        (areas || []).forEach((row) => list.editableList("addItem", row));
+      };
+      module.exports = { tagTable, areaTable, rowsOf, importTags, exportTags };
+    }
+  });
+
+  // scripts/editor/plc.js
+  var require_plc = __commonJS({
+    "scripts/editor/plc.js"(exports, module) {
+      "use strict";
+      var { areaMap } = require_areas();
+      var { done, open } = require_check();
+      var { attempt } = require_model();
+      var { areaTable, exportTags, importTags, rowsOf, tagTable } = require_table();
+      var { fillDefaults, tabs } = require_widgets();
+      var { errorText, t } = require_texts();
+      var PREFIX = "node-config-input-";
+      var value = (name) => $(`#${PREFIX}${name}`).val();
+      var plcLabel = (plc) => t("editor.station", { station: plc.station === "" ? "?" : plc.station });
+      var areaRows = () => rowsOf($("#nxline-nx-area-list")).filter((row) => row.area);
+      var tagRows = () => rowsOf($("#nxline-nx-tag-list")).filter((row) => row.name || row.address);
+      var context = () => ({ steps: value("steps"), areas: attempt(areaRows, []) });
+      var judgeAll = () => $("#nxline-nx-tag-list").editableList("items").toArray().forEach((row) => row.data("nxline").judge());
+      var noteAreas = () => {
+        const map = attempt(() => areaMap(areaRows()), null);
+        if (!map) return;
+        const names = (sure) => map.list.filter((row) => row.certainty === "unconfirmed" === sure).map((row) => row.area);
+        $("#nxline-nx-area-note").text(
+          t("editor.areaNote", { sure: names(false).join(", "), unsure: names(true).join(", ") || "–" })
+        );
+      };
+      var wireCsv = (node) => {
+        $("#nxline-nx-export").on("click", () => exportTags($("#nxline-nx-tag-list"), value("name") || node.id));
+        $("#nxline-nx-import").on("click", () => $("#nxline-nx-file").val("").trigger("click"));
+        $("#nxline-nx-file").on("change", async function() {
+          try {
+            const count = importTags($("#nxline-nx-tag-list"), await this.files[0].text(), areaRows());
+            RED.notify(t("editor.imported", { number: count }), "success");
+          } catch (error) {
+            RED.notify($("<span>").text(errorText(error)).html(), "error");
+          }
+        });
+      };
+      var lineProperties = (id) => {
+        const line = RED.nodes.node(id);
+        if (!line) return null;
+        const names = Object.keys(line._def.defaults);
+        return { id, ...Object.fromEntries(names.map((name) => [name, line[name]])) };
+      };
+      var plcProperties = (node) => {
+        const fields = ["name", "line", "station", "steps", "timeout", "masterIds"];
+        return { id: node.id, ...Object.fromEntries(fields.map((name) => [name, value(name)])), areas: areaRows(), tags: tagRows() };
+      };
+      var showResult = (text, colour) => $("#nxline-nx-test-result").show().text(text).css({ borderLeft: `4px solid var(${colour})` });
+      var sentence = (answer) => answer.ok ? [t("test.ok", answer), "--red-ui-text-color-success"] : [t(answer.reached ? "test.reached" : "test.failed", { text: errorText(answer.error) }), "--red-ui-text-color-error"];
+      var httpError = (xhr) => {
+        const error = xhr.responseJSON && xhr.responseJSON.error || null;
+        if (error) return { ok: false, error };
+        const message = t(xhr.status === 401 || xhr.status === 403 ? "test.denied" : "test.unreachable");
+        return { ok: false, error: { message } };
+      };
+      var runTest = (node) => {
+        const button = $("#nxline-nx-test").prop("disabled", true);
+        showResult(t("test.running"), "--red-ui-secondary-text-color");
+        const finish = (answer) => {
+          button.prop("disabled", false);
+          showResult(...sentence(answer));
+        };
+        const data = JSON.stringify({ plc: plcProperties(node), line: lineProperties(value("line")) });
+        $.ajax({ url: "nx-config/test", type: "POST", contentType: "application/json", data }).then(
+          finish,
+          (xhr) => finish(httpError(xhr))
+        );
+      };
+      var editPlc = (node) => {
+        open(node, PREFIX);
+        fillDefaults(node, PREFIX);
+        areaTable($("#nxline-nx-area-list"), node.areas, () => noteAreas());
+        tagTable($("#nxline-nx-tag-list"), node.tags, context);
+        noteAreas();
+        wireCsv(node);
+        $("#nxline-nx-test").on("click", () => runTest(node));
+        $(`#${PREFIX}steps`).on("change", judgeAll);
+        $(`#${PREFIX}line`).on("change", () => $(`#${PREFIX}station`).trigger("change"));
+        $(`#${PREFIX}access`).on("change", function() {
+          $(".nxline-writing").toggle($(this).val() !== "read");
+          $(".nxline-reading").toggle($(this).val() === "read");
+        }).trigger("change");
+        $("#nxline-nx-tags").on("nxline-shown", judgeAll);
+        tabs("nxline-nx-tabs", [
+          ["nxline-nx-plc", t("tab.plc")],
+          ["nxline-nx-tags", t("tab.tags")],
+          ["nxline-nx-writing", t("tab.writing")],
+          ["nxline-nx-details", t("tab.details")]
+        ]);
+      };
+      var savePlc = (node) => {
+        node.areas = areaRows();
+        node.tags = tagRows();
+        done();
+      };
+      var resizePlc = (size) => $("#nxline-nx-tag-list").editableList("height", Math.max(200, size.height - 190));
+      module.exports = { editPlc, savePlc, resizePlc, plcLabel };
+    }
+  });
+
+  // scripts/editor/flow.js
+  var require_flow = __commonJS({
+    "scripts/editor/flow.js"(exports, module) {
+      "use strict";
+      var { done, isVariable, open } = require_check();
+      var { attempt, describe, notationWithTags, parseItem, unsure } = require_model();
+      var { copyable, fillDefaults, flex, note, say, suggest } = require_widgets();
+      var { errorText, t } = require_texts();
+      var PREFIX = "node-input-";
+      var value = (name) => $(`#${PREFIX}${name}`).val();
+      var plcOf = () => RED.nodes.node(value("plc"));
+      var tagOffers = () => [...notationWithTags(plcOf()).tags.values()].map((tag) => ({
+        value: tag.name,
+        hint: [tag.address, tag.label, tag.unit].filter(Boolean).join(" · ")
+      }));
+      var itemTexts = () => $("#nxline-read-items").editableList("items").toArray().map((row) => row.data("nxline").read()).filter((text) => text !== "");
+      var judgeItem = (text, block) => {
+        if (!text) return say(block, t("editor.itemHint"));
+        if (isVariable(text)) return say(block, t("editor.variable"));
+        const plc = plcOf();
+        const notation = notationWithTags(plc);
+        try {
+          const item = parseItem(text, notation);
+          const sure = unsure(item, notation) ? ` · ${t("editor.unconfirmed")}` : "";
+          say(block, `${describe(item, plc || {})}${sure} · `);
+          return block.append(copyable(value("format") === "object" ? `msg.payload.${item.name}` : item.name));
+        } catch (error) {
+          return say(block, errorText(error), true);
+        }
+      };
+      var addItem = (container, data) => {
+        const field = $('<input type="text" class="nxline-item">').css({ flexGrow: 1, margin: 0 }).attr({ placeholder: t("editor.itemExample"), "aria-label": t("editor.item") }).val(typeof data === "string" ? data : data.text || "");
+        const message = note();
+        const read = () => String(field.val()).trim();
+        const judge = () => judgeItem(read(), message);
+        container.append(flex(field)).append(message);
+        suggest(field, tagOffers);
+        field.on("input change", () => {
+          judge();
+          showExample();
+        });
+        container.data("nxline", { read, judge });
+        judge();
+      };
+      var judgeAll = () => {
+        const rows = $("#nxline-read-items").editableList("items").toArray();
+        rows.forEach((row) => row.data("nxline").judge());
+        showExample();
+      };
+      var SAMPLES = { bool: true, float32: 21.5 };
+      var sampleOf = (item, index) => {
+        const one = item.type.name.startsWith("string") ? "ABC" : SAMPLES[item.type.name] ?? 120 + index;
+        const plain = one === true && value("booleans") === "number" ? 1 : one;
+        return item.range && value("ranges") === "array" ? Array.from({ length: Math.min(item.count, 3) }, () => plain) : plain;
+      };
+      var singles = (item) => item.range && value("ranges") === "values" ? item.elements.map(({ name }) => ({ ...item, name })) : [item];
+      var EXAMPLES = {
+        object: (rows, device) => ({ topic: device, payload: Object.fromEntries(rows) }),
+        message: ([[name, one]]) => ({ topic: name, payload: one }),
+        envelope: ([[name, one]]) => ({ topic: name, payload: { value: one, quality: "good", timestamp: 17672256e5, unit: "" } }),
+        list: (rows, device) => ({
+          topic: device,
+          payload: rows.map(([name, one]) => ({ name, value: one, quality: "good", timestamp: 17672256e5, unit: "" }))
+        })
+      };
+      var showExample = () => {
+        const notation = notationWithTags(plcOf());
+        const items = itemTexts().flatMap((text2) => attempt(() => singles(parseItem(text2, notation)), []));
+        const rows = items.slice(0, 3).map((item, index) => [item.name, sampleOf(item, index)]);
+        const shape = EXAMPLES[value("format")];
+        const block = $("#nxline-read-example");
+        if (rows.length === 0 || !shape || value("itemsType") !== "list") return block.parent().hide();
+        const plc = plcOf();
+        const text = JSON.stringify(shape(rows, plc && plc.name || "PLC"));
+        block.text(items.length > 3 ? `${text} …` : text);
+        return block.parent().show();
+      };
+      var editRead = (node) => {
+        open(node, PREFIX);
+        fillDefaults(node, PREFIX);
+        const list = $("#nxline-read-items").editableList({
+          addItem: (container, _index, data) => addItem(container, data),
+          removeItem: () => setTimeout(showExample, 0),
+          addButton: t("editor.addItem"),
+          removable: true,
+          sortable: true,
+          scrollOnAdd: true,
+          height: 180
+        });
+        (node.items || []).forEach((text) => list.editableList("addItem", { text }));
+        if (!node.items || node.items.length === 0) list.editableList("addItem", { text: "" });
+        $(`#${PREFIX}itemsType`).on("change", function() {
+          $(".nxline-list").toggle($(this).val() === "list");
+          showExample();
+        }).trigger("change");
+        ["plc", "format", "ranges", "booleans"].forEach((name) => $(`#${PREFIX}${name}`).on("change", judgeAll));
+        judgeAll();
+      };
+      var saveRead = (node) => {
+        node.items = itemTexts();
+        done();
+      };
+      var resizeRead = (size) => {
+        const others = $("#dialog-form > div:visible").not(".nxline-list").toArray();
+        const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0);
+        $("#nxline-read-items").editableList("height", Math.max(140, size.height - used - 100));
+      };
+      var readLabel = (node) => {
+        if (node.itemsType === "msg") return "msg.items";
+        const items = node.items || [];
+        return items.length > 2 ? `${items.slice(0, 2).join(", ")} …` : items.join(", ");
+      };
+      var judgeTarget = () => {
+        const text = String(value("target") || "").trim();
+        const plc = plcOf();
+        const block = $("#nxline-write-note");
+        if (!text) return say(block, t("editor.noTarget"));
+        if (isVariable(text)) return say(block, t("editor.variable"));
+        const notation = notationWithTags(plc);
+        try {
+          const item = parseItem(text, notation);
+          if (plc && plc.access !== "write") return say(block, t("problem.readOnly", { plc: plc.name || plc.id }), true);
+          return say(block, describe(item, { ...plc, write: true }));
+        } catch (error) {
+          return say(block, errorText(error), true);
+        }
+      };
+      var editWrite = (node) => {
+        open(node, PREFIX);
+        fillDefaults(node, PREFIX);
+        suggest($(`#${PREFIX}target`), tagOffers);
+        $(`#${PREFIX}target, #${PREFIX}plc`).on("input change", judgeTarget);
+        $(`#${PREFIX}plc`).on("change", () => $(`#${PREFIX}target`).trigger("change"));
+        $(`#${PREFIX}topic`).on("change", function() {
+          $(`#${PREFIX}topicText`).toggle($(this).val() === "fixed");
+        }).trigger("change");
+        judgeTarget();
+      };
+      var saveWrite = (node) => {
+        node.outputs = value("onFailure") === "output" ? 2 : 1;
+        done();
+      };
+      var writeLabel = (node) => node.target || "";
+      module.exports = { editRead, saveRead, resizeRead, readLabel, editWrite, saveWrite, writeLabel };
+    }
+  });
+
+  // scripts/editor/index.js
+  var require_index = __commonJS({
+    "scripts/editor/index.js"(exports, module) {
+      module.exports = {
+        check: require_check().check,
+        done: require_check().done,
+        ...require_line(),
+        ...require_plc(),
+        ...require_flow()
+      };
+    }
+  });
+  return require_index();
+})();

@@ -1,0 +1,10 @@
+'use strict'
+
+/** What the dialogs share; built into resources/editor.js as `nxlineSerialPlc` (scripts/build-editor.js). */
+module.exports = {
+  check: require('./check').check,
+  done: require('./check').done,
+  ...require('./line'),
+  ...require('./plc'),
+  ...require('./flow')
+}

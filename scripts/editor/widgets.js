@@ -1,0 +1,129 @@
+'use strict'
+const { t } = require('./texts')
+
+/** Small parts that several dialogs share. */
+
+/**
+ * Tabs over the children of a block.
+ * @param {string} id of the ul; the content is `#${id}-content` with one child per tab
+ * @param {[string, string][]} pages [id of the child, label]
+ */
+const tabs = (id, pages) => {
+  const widget = RED.tabs.create({
+    id,
+    onchange(tab) {
+      $(`#${id}-content`).children().hide()
+      $(`#${tab.id}`).show()
+      $(`#${tab.id}`).trigger('nxline-shown')
+    }
+  })
+  pages.forEach(([page, label]) => widget.addTab({ id: page, label }))
+  return widget
+}
+
+/** A value that a select does not offer (a variable, a later version's) stays what it is. */
+const keepUnknown = (field, value) => {
+  if (value === undefined || value === null || value === '') return
+  const known = field.find('option').filter((_, option) => option.value === String(value)).length > 0
+  if (!known) field.append($('<option>').attr('value', value).text(value))
+  field.val(String(value))
+}
+
+/** A property that was saved before it existed shows its default. */
+const fillDefaults = (node, prefix) => {
+  for (const [name, { value }] of Object.entries(node._def.defaults)) {
+    const field = $(`#${prefix}${name}`)
+    if (field.length === 0) continue
+    if (node[name] === undefined && value !== '' && !Array.isArray(value)) {
+      if (field.is(':checkbox')) field.prop('checked', value)
+      else field.val(String(value))
+    }
+    if (field.is('select') && !field.prop('multiple') && !name.match(/^(line|plc)$/)) {
+      keepUnknown(field, node[name] === undefined ? value : node[name])
+    }
+  }
+}
+
+/** Suggestions while typing, all of them on an empty field. */
+const suggest = (field, offers) =>
+  field.autoComplete({
+    minLength: 0,
+    search(value, answer) {
+      const wanted = value.trim().toLowerCase()
+      const found = offers().filter(offer => `${offer.value} ${offer.hint || ''}`.toLowerCase().includes(wanted))
+      answer(
+        found.slice(0, 50).map(offer => ({
+          value: offer.value,
+          label: $('<span>')
+            .text(offer.value)
+            .append(
+              $('<span>').css({ color: 'var(--red-ui-secondary-text-color)', marginLeft: '8px' }).text(offer.hint || '')
+            )
+        }))
+      )
+    }
+  })
+
+/** A code to copy: a click puts it on the clipboard. */
+const copyable = text =>
+  $('<a href="#" class="nxline-copy">')
+    .css({ fontFamily: 'var(--red-ui-monospace-font)', whiteSpace: 'nowrap' })
+    .attr('title', t('editor.copy'))
+    .text(text)
+    .prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>')
+    .on('click', function (event) {
+      event.preventDefault()
+      RED.clipboard.copyText(text, $(this))
+    })
+
+/** A line of small print under a field; `bad` in the colour of errors. */
+const note = () =>
+  $('<div class="nxline-note">').css({
+    fontSize: '12px',
+    lineHeight: '16px',
+    minHeight: '16px',
+    color: 'var(--red-ui-secondary-text-color)'
+  })
+
+const say = (block, text, bad = false) =>
+  block
+    .empty()
+    .text(text)
+    .css('color', bad ? 'var(--red-ui-text-color-error)' : 'var(--red-ui-secondary-text-color)')
+
+/** A small input of a table, with its name as placeholder and tooltip. */
+const cell = (name, value, { width = '80px', grow = false } = {}) =>
+  $('<input type="text">')
+    .addClass(`nxline-${name}`)
+    .attr({ placeholder: t(`column.${name}`), title: t(`tooltip.${name}`), 'aria-label': t(`column.${name}`) })
+    .css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 })
+    .val(value === undefined || value === null ? '' : String(value))
+
+/** A small select of a table. `options`: [value, label]. */
+const pick = (name, value, options) => {
+  const field = $('<select>')
+    .addClass(`nxline-${name}`)
+    .attr({ title: t(`tooltip.${name}`), 'aria-label': t(`column.${name}`) })
+    .css({ width: 'auto', margin: 0 })
+  options.forEach(([key, label]) => field.append($('<option>').attr('value', key).text(label)))
+  keepUnknown(field, value)
+  return field
+}
+
+const tick = (name, value) => {
+  const box = $('<input type="checkbox">')
+    .addClass(`nxline-${name}`)
+    .css({ width: 'auto', margin: '0 4px 0 0' })
+    .prop('checked', Boolean(value) && value !== 'false')
+  const label = $('<label>')
+    .css({ width: 'auto', margin: 0, display: 'inline-flex', alignItems: 'center', whiteSpace: 'nowrap' })
+    .attr('title', t(`tooltip.${name}`))
+    .append(box)
+    .append(document.createTextNode(t(`column.${name}`)))
+  return { box, label }
+}
+
+const flex = (...children) =>
+  $('<div>').css({ display: 'flex', gap: '4px', alignItems: 'center', marginBottom: '3px' }).append(children)
+
+module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex }

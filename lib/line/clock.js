@@ -1,0 +1,25 @@
+'use strict'
+
+const { performance } = require('node:perf_hooks')
+
+/**
+ * The clock of the machine. Intervals come from the monotonic clock, so a time server that moves the wall clock by an
+ * hour moves no poll. Timers are rounded up to whole ms: a timer that fires early would cut a gap short.
+ * @type {Clock}
+ */
+const realClock = Object.freeze({
+  now: () => performance.now(),
+  wall: () => Date.now(),
+  setTimer: (fn, ms) => setTimeout(fn, Math.max(0, Math.ceil(ms))),
+  clearTimer: timer => clearTimeout(timer)
+})
+
+/**
+ * @typedef {object} Clock
+ * @property {() => number} now monotonic ms, with fractions
+ * @property {() => number} wall epoch ms
+ * @property {(fn: () => void, ms: number) => any} setTimer
+ * @property {(timer: any) => void} clearTimer any number of times; undefined is allowed
+ */
+
+module.exports = { realClock }

@@ -1,0 +1,76 @@
+'use strict'
+
+/**
+ * A 2-wire adapter may hear what it sends itself. Whether it does is found out from the first answered step; until
+ * then, and where it does, one copy of our own bytes proves nothing (MODBUS answers a write with a copy of it).
+ */
+class Echo {
+  #mode
+  /** @type {'unknown'|'present'|'absent'} */
+  state = 'unknown'
+  /** @type {any} */
+  #sent = null
+  #heard = false
+  #clean = true
+
+  /** @param {'auto'|'on'|'off'} mode */
+  constructor(mode) {
+    this.#mode = mode
+    this.reset()
+  }
+
+  /** The port was opened: another adapter may be behind it. */
+  reset() {
+    this.state = { on: 'present', off: 'absent' }[this.#mode] ?? 'unknown'
+  }
+
+  /** @param {Buffer} bytes about to be sent */
+  sent(bytes) {
+    this.#sent = bytes
+    this.#heard = false
+    this.#clean = true
+  }
+
+  /** Other bytes came first: they may have been our echo, damaged. */
+  disturbed() {
+    this.#clean = false
+  }
+
+  get #awaited() {
+    return this.state !== 'absent' && !this.#heard
+  }
+
+  /** Bytes that our own echo will put before the answer. */
+  get expected() {
+    return this.state === 'present' && !this.#heard ? this.#sent.length : 0
+  }
+
+  /**
+   * @param {Buffer} bytes received since sending
+   * @returns {number} n > 0: the first n are our echo; 0: they are not; -1: too few to tell
+   */
+  look(bytes) {
+    if (!this.#awaited) return 0
+    const most = Math.min(bytes.length, this.#sent.length)
+    if (this.#sent.compare(bytes, 0, most, 0, most) !== 0) return 0
+    if (most < this.#sent.length) return -1
+    this.#heard = true
+    return most
+  }
+
+  /** Whether this frame, taken as the answer, is our own echo behind a byte of noise. */
+  isEcho(frame) {
+    if (!this.#awaited || !frame.equals(this.#sent)) return false
+    this.#heard = true
+    return true
+  }
+
+  /** The step was answered: now it is known. */
+  answered() {
+    if (this.state !== 'unknown') return
+    if (this.#heard) this.state = 'present'
+    else if (this.#clean) this.state = 'absent'
+  }
+}
+
+module.exports = { Echo }

@@ -1,0 +1,269 @@
+'use strict'
+
+const { PlcError } = require('../error')
+const { EMPTY, Receiver } = require('./receiver')
+
+/** A timer that fires this late (ms) tells of a busy process, not of a silent station: then the bytes get time to come in. */
+const LAG = 10
+const MOST_GRACE = 250
+
+const TOLERANCE = 0.001
+
+/**
+ * One step on the wire at a time: gap, sending, answer. Synchronous: `done(error, answer)` is called from a timer or from
+ * the arrival of bytes. Knows no stations and no queue.
+ */
+class Exchange {
+  #clock
+  #times
+  #link
+  #echo
+  #settings
+  #rx = new Receiver()
+  /** @type {any} */
+  #job = null
+  /** @type {any} */
+  #timer = null
+  #lastByteAt = -Infinity
+  #sendEnd = -Infinity
+
+  /**
+   * @param {{ clock: any, settings: any, times: any, echo: any, link: any }} options
+   *   link: `{ name, write(bytes, done), hint(count, at), stray(bytes), skipped(bytes), echoed(bytes) }`
+   */
+  constructor({ clock, settings, times, echo, link }) {
+    this.#clock = clock
+    this.#settings = settings
+    this.#times = times
+    this.#echo = echo
+    this.#link = link
+  }
+
+  get busy() {
+    return this.#job !== null
+  }
+
+  /** The computed end of the frame that is being sent, or was sent last; ms of the clock. */
+  get sendEnd() {
+    return this.#sendEnd
+  }
+
+  /** When the last byte came or went, ms. */
+  get quietSince() {
+    return Math.max(this.#lastByteAt, this.#sendEnd)
+  }
+
+  /**
+   * @param {any} step of a conversation
+   * @param {{ gap: number, station: any, sent: () => void, done: (error: any, answer: Buffer, facts: any) => void }} options
+   *   facts: `{ due, sent, ms }` — when the answer should have begun; whether a byte went out; ms since the end of sending
+   */
+  start(step, { gap, station, sent, done }) {
+    const now = this.#clock.now()
+    this.#job = { step, gap, station, sent, done, phase: 'gap', from: now, due: 0, written: false, ours: 0, bytes: 0 }
+    this.#whenSilent()
+  }
+
+  #whenSilent = () => {
+    this.#timer = null
+    const job = this.#job
+    const now = this.#clock.now()
+    const free = this.quietSince + job.gap
+    if (now >= free - TOLERANCE) return this.#send()
+    if (job.bytes > 0 && now - job.from >= this.#settings.jamTime) {
+      return this.#settle(new PlcError('LINE_JAMMED', { line: this.#link.name, bytes: job.bytes, sent: false }))
+    }
+    this.#timer = this.#clock.setTimer(this.#whenSilent, free - now)
+  }
+
+  #send() {
+    const job = this.#job
+    const { send, match } = job.step
+    this.#echo.sent(send)
+    this.#rx.takeAll()
+    job.phase = 'awaiting'
+    job.sentAt = this.#clock.now()
+    this.#sendEnd = job.sentAt + send.length * this.#times.character
+    job.writing = true
+    job.sent()
+    this.#link.write(send, error => this.#written(job, error))
+    job.writing = false
+    if (this.#job !== job) return
+    if (match) this.#hint(this.#echo.expected + (match(EMPTY).need ?? 1), this.#sendEnd)
+    this.#look()
+  }
+
+  #written(job, error) {
+    if (this.#job !== job || job.written) return
+    job.written = true
+    const now = this.#clock.now()
+    if (error) return this.#fail(error)
+    this.#sendEnd = Math.max(this.#sendEnd, now)
+    if (!job.writing) this.#look()
+  }
+
+  /** Before this many bytes can have come nobody needs to read. */
+  #hint(count, from) {
+    if (count > 0) this.#link.hint(count, from + (count - this.#echo.expected) * this.#times.character)
+  }
+
+  /** Bytes arrived. @param {Buffer} bytes */
+  data(bytes) {
+    const now = this.#clock.now()
+    this.#lastByteAt = now
+    const job = this.#job
+    if (!job) return this.#link.stray(bytes)
+    job.bytes += bytes.length
+    if (job.phase !== 'awaiting' || !job.step.match) return this.#link.stray(bytes)
+    const dropped = this.#rx.push(bytes, now)
+    if (dropped.length > 0) this.#link.skipped(dropped)
+    if (!job.writing) this.#look(true)
+  }
+
+  /** Looks at what has come; settles, or sets the time until which more may come. */
+  #look(fresh = false) {
+    const job = this.#job
+    if (job.step.match) {
+      let verdict
+      try {
+        verdict = this.#judge(job.step)
+      } catch (error) {
+        return this.#fail(error)
+      }
+      if (this.#job !== job) return
+      job.need = verdict.need ?? 1
+      job.ours = verdict.ours ?? false
+      if (fresh && this.#rx.bytes.length > 0) this.#hint(job.need - this.#rx.bytes.length, this.#lastByteAt)
+    }
+    this.#arm(this.#dueTime(job))
+  }
+
+  #judge(step) {
+    for (;;) {
+      const { bytes } = this.#rx
+      if (bytes.length === 0) return { need: 1 }
+      const echo = this.#echo.look(bytes)
+      if (echo > 0) {
+        this.#link.echoed(this.#rx.take(echo))
+        continue
+      }
+      if (echo < 0) return { need: Math.max(step.send.length, this.#echo.expected + step.match(EMPTY).need) }
+      const verdict = step.match(bytes)
+      if (verdict.take > 0 && verdict.take <= bytes.length) {
+        const frame = this.#rx.take(verdict.take)
+        if (this.#echo.isEcho(frame)) {
+          this.#link.echoed(frame)
+          continue
+        }
+        this.#echo.answered()
+        this.#settle(null, frame)
+        return verdict
+      }
+      if (verdict.bad) {
+        this.#damaged(verdict)
+        return verdict
+      }
+      if (!(verdict.skip > 0)) return verdict.need > bytes.length ? verdict : { ...verdict, need: bytes.length + 1 }
+      this.#skip(step)
+    }
+  }
+
+  /** Drops all that is not ours in one go: noise comes in many bytes. */
+  #skip(step) {
+    const { bytes } = this.#rx
+    let at = 0
+    while (at < bytes.length) {
+      const { skip } = step.match(bytes.subarray(at))
+      if (!(skip > 0)) break
+      at += skip
+    }
+    this.#echo.disturbed()
+    this.#link.skipped(this.#rx.take(at))
+  }
+
+  #damaged({ bad, length }) {
+    const frame = this.#rx.take(length ?? this.#rx.bytes.length)
+    const { station } = this.#job
+    this.#settle(new PlcError('CRC_ERROR', { station, got: frame.toString('hex'), reason: bad, sent: true }), frame)
+  }
+
+  #dueTime(job) {
+    const { step } = job
+    if (!job.written) return this.#sendEnd + this.#settings.writeTimeout
+    if (!step.match) return this.#sendEnd + (step.turnaround ?? 100)
+    const due = this.#sendEnd + step.timeout
+    if (this.#rx.bytes.length === 0) return due
+    const rest = this.#rx.firstAt + job.need * this.#times.character + this.#times.slack
+    if (job.ours) return rest
+    // begun in time, but not yet known as ours: it may be the answer
+    return this.#rx.firstAt <= due ? Math.max(due, rest) : due
+  }
+
+  #arm(due) {
+    const job = this.#job
+    job.due = due
+    if (this.#timer !== null && job.firesAt <= due) return
+    this.#clock.clearTimer(this.#timer)
+    job.firesAt = due
+    this.#timer = this.#clock.setTimer(this.#expired, due - this.#clock.now())
+  }
+
+  #expired = () => {
+    this.#timer = null
+    const job = this.#job
+    const now = this.#clock.now()
+    const early = job.due - now
+    if (early > TOLERANCE) return this.#arm(job.due)
+    if (-early > LAG && !job.graced) {
+      job.graced = true
+      job.firesAt = now + Math.min(-early, MOST_GRACE)
+      this.#timer = this.#clock.setTimer(this.#expired, Math.min(-early, MOST_GRACE))
+      return
+    }
+    if (!job.written) return this.#fail(new PlcError('WRITE_STALLED', { line: this.#link.name, sent: true }))
+    if (!job.step.match) return this.#settle(null, EMPTY)
+    this.#timedOut(job)
+  }
+
+  #timedOut({ station, step, ours, need }) {
+    const got = this.#rx.bytes.length
+    const error = ours
+      ? new PlcError('INCOMPLETE', { station, got, expected: need, sent: true })
+      : new PlcError('TIMEOUT', { station, timeout: step.timeout, sent: true })
+    this.#settle(error, this.#rx.takeAll())
+  }
+
+  /** Ends the step with this error, from outside or by the transport. */
+  #fail(error) {
+    this.#settle(error, this.#rx.takeAll())
+  }
+
+  /**
+   * Ends the step without telling anybody.
+   * @returns {{ sent: boolean, due: number, seen: Buffer } | null} due: when its answer should have begun
+   */
+  abort() {
+    const job = this.#job
+    if (!job) return null
+    this.#idle()
+    const sent = job.phase === 'awaiting'
+    return { sent, due: this.#sendEnd + (job.step.timeout ?? 0), seen: this.#rx.takeAll() }
+  }
+
+  #idle() {
+    this.#clock.clearTimer(this.#timer)
+    this.#timer = null
+    this.#job = null
+  }
+
+  #settle(error, bytes = EMPTY) {
+    const job = this.#job
+    this.#idle()
+    const rest = this.#rx.takeAll()
+    if (rest.length > 0) this.#link.stray(rest)
+    const due = this.#sendEnd + (job.step.timeout ?? 0)
+    job.done(error, bytes, { due, sent: job.phase === 'awaiting', ms: this.#clock.now() - this.#sendEnd })
+  }
+}
+
+module.exports = { Exchange }

@@ -1,0 +1,114 @@
+'use strict'
+
+const { PlcError } = require('../error')
+const { realClock } = require('./clock')
+const { Lease } = require('./lease')
+const { Line } = require('./line')
+const { difference, lineName, lineSettings, wireKey } = require('./settings')
+const { serial } = require('./transports/serial')
+const { simulated } = require('./transports/memory')
+const { tcp } = require('./transports/tcp')
+
+const TRANSPORTS = Object.freeze({ serial, tcp, simulated })
+
+/**
+ * Shares lines by wire: who asks for the same path or host:port gets the same line; the last one out closes it.
+ *
+ * @param {object} [options]
+ * @param {import('./clock').Clock} [options.clock]
+ * @param {Record<string, (settings: any, clock: any) => any>} [options.transports] factories by name; replace the own ones
+ * @param {() => number} [options.random] 0 to 1, for the jitter of reconnecting
+ * @returns {{ open: (settings: any, owner: { id: string, name: string }) => Lease, lines: () => any[] }}
+ */
+function createPool({ clock = realClock, transports = {}, random = Math.random } = {}) {
+  const pool = {
+    clock,
+    random,
+    transports: { ...TRANSPORTS, ...transports },
+    entries: new Map(),
+    closing: new Map(),
+    claims: new Map(),
+    memories: new Map()
+  }
+  return {
+    /**
+     * @param {any} raw settings of a line, see settings.js
+     * @param {{ id: string, name: string }} owner for texts
+     * @throws {PlcError} BAD_SETTING, WIRE_CONFLICT
+     */
+    open: (raw, owner) => lease(pool, lineSettings(raw), owner),
+    /** The open lines, for tests and monitors: `{ key, line, leases }`. */
+    lines: () => [...pool.entries.values()].map(({ key, line, leases }) => ({ key, line, leases: leases.size }))
+  }
+}
+
+function lease(pool, settings, owner) {
+  const key = wireKey(settings)
+  const entry = pool.entries.get(key) ?? newEntry(pool, { key, settings, owner })
+  const reason = difference(entry.settings, settings)
+  if (reason) {
+    const other = [...entry.leases][0]?.owner.name ?? entry.owner.name
+    throw new PlcError('WIRE_CONFLICT', { owner: owner.name, other, path: key, reason })
+  }
+  const made = new Lease({ line: entry.line, owner, release: done => leave(pool, entry, { lease: made, done }) })
+  entry.leases.add(made)
+  return made
+}
+
+function newEntry(pool, { key, settings, owner }) {
+  const { clock, random, memories } = pool
+  /** @type {any} */
+  const entry = { key, settings, owner, leases: new Set(), line: null }
+  if (!memories.has(key)) memories.set(key, new Map())
+  const line = new Line({
+    name: lineName(settings),
+    settings,
+    clock,
+    random,
+    make: () => pool.transports[settings.transport](settings, clock),
+    claims: claimsOf(pool, entry),
+    memories: memories.get(key)
+  })
+  entry.line = line
+  pool.entries.set(key, entry)
+  line.open()
+  // the port of the line before may still be on its way to be closed
+  const before = pool.closing.get(key)
+  if (before) before.push(() => line.connect())
+  else line.connect()
+  return entry
+}
+
+/** Two names may lead to one wire: it is the real one that is claimed, at each open. */
+const claimsOf = (pool, entry) => ({
+  take: id => {
+    const holder = pool.claims.get(id)
+    if (holder && holder !== entry) {
+      const owner = [...holder.leases][0]?.owner.name ?? holder.owner.name
+      throw new PlcError('WIRE_IN_USE', { path: entry.key, other: holder.key, owner })
+    }
+    pool.claims.set(id, entry)
+  },
+  release: id => {
+    if (pool.claims.get(id) === entry) pool.claims.delete(id)
+  }
+})
+
+function leave(pool, entry, { lease: gone, done }) {
+  entry.leases.delete(gone)
+  if (entry.leases.size > 0) {
+    entry.line.drop(gone)
+    return done()
+  }
+  const { key, line } = entry
+  pool.entries.delete(key)
+  const waiting = []
+  pool.closing.set(key, waiting)
+  line.close(() => {
+    if (pool.closing.get(key) === waiting) pool.closing.delete(key)
+    done()
+    for (const next of waiting) next()
+  })
+}
+
+module.exports = { createPool }

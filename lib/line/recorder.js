@@ -1,0 +1,63 @@
+'use strict'
+
+const { Stats } = require('./stats')
+const { Trace } = require('./trace')
+
+const FAILURES = { TIMEOUT: 'timeouts', INCOMPLETE: 'incomplete', CRC_ERROR: 'crcErrors' }
+
+/** What happened on a line, counted and kept: statistics and trace in one place, so that they agree. */
+class Recorder {
+  stats = new Stats()
+  trace = new Trace()
+  #clock
+  #sentAt = 0
+
+  /** @param {any} clock */
+  constructor(clock) {
+    this.#clock = clock
+  }
+
+  #row(dir, { station, bytes, note }) {
+    this.trace.add({ t: this.#clock.wall(), dir, station, bytes, note })
+  }
+
+  sent(station, bytes, label) {
+    this.#sentAt = this.#clock.now()
+    this.stats.count('queries', station)
+    this.stats.add('bytesOut', bytes.length)
+    this.#row('out', { station, bytes, note: label })
+  }
+
+  /** @param {{ station: any, step: any, error: any, answer: Buffer, facts: { sent: boolean, ms: number } }} end of a step */
+  ended({ station, step, error, answer, facts }) {
+    if (facts.sent) this.stats.add('busy', this.#clock.now() - this.#sentAt)
+    if (error) return this.#failed(station, error, answer)
+    if (!step.match) return
+    this.stats.answered(station, facts.ms)
+    this.#row('in', { station, bytes: answer, note: '' })
+  }
+
+  #failed(station, error, seen) {
+    const counter = FAILURES[error.code]
+    if (counter) this.stats.count(counter, station)
+    this.#row('in', { station, bytes: seen, note: error.code ?? error.message })
+  }
+
+  late(station, frame) {
+    this.stats.count('late', station)
+    this.#row('in', { station, bytes: frame, note: 'late' })
+  }
+
+  echoed(bytes) {
+    this.stats.count('echoes')
+    this.#row('in', { station: null, bytes, note: 'echo' })
+  }
+
+  /** @param {'skipped'|'stray'} note @param {Buffer} bytes */
+  unclaimed(note, bytes) {
+    this.stats.add(note === 'skipped' ? 'skippedBytes' : 'strayBytes', bytes.length)
+    this.trace.addStray({ t: this.#clock.wall(), bytes, note })
+  }
+}
+
+module.exports = { Recorder }

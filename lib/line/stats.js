@@ -1,0 +1,53 @@
+'use strict'
+
+const STATION = ['queries', 'answers', 'timeouts', 'incomplete', 'crcErrors', 'late', 'overruns']
+const LINE = [...STATION, 'skippedBytes', 'strayBytes', 'echoes', 'queueFull', 'bytesOut', 'bytesIn', 'reconnects']
+
+const zeros = names => Object.fromEntries(names.map(name => [name, 0]))
+
+/** Counters of a line and of each of its stations. Plain numbers; they only grow. */
+class Stats {
+  #line = { ...zeros(LINE), busy: 0 }
+  #stations = new Map()
+
+  /** @param {string} name @param {any} [station] counted for it as well */
+  count(name, station = null) {
+    this.#line[name]++
+    if (station !== null) this.#of(station).counts[name]++
+  }
+
+  /** @param {string} name @param {number} amount */
+  add(name, amount) {
+    this.#line[name] += amount
+  }
+
+  /** @param {any} station @param {number} ms from the computed end of sending to the end of the answer */
+  answered(station, ms) {
+    this.count('answers', station)
+    const latency = this.#of(station)
+    latency.min = Math.min(latency.min, ms)
+    latency.max = Math.max(latency.max, ms)
+    latency.sum += ms
+  }
+
+  #of(station) {
+    let entry = this.#stations.get(station)
+    if (!entry) {
+      entry = { counts: zeros(STATION), min: Infinity, max: 0, sum: 0 }
+      this.#stations.set(station, entry)
+    }
+    return entry
+  }
+
+  /** A copy: `{ queries, …, busy, stations: { [station]: { queries, …, latency: { min, mean, max } | null } } }`. */
+  snapshot() {
+    const stations = {}
+    for (const [station, { counts, min, max, sum }] of this.#stations) {
+      const latency = counts.answers > 0 ? { min, mean: sum / counts.answers, max } : null
+      stations[String(station)] = { ...counts, latency }
+    }
+    return { ...this.#line, stations }
+  }
+}
+
+module.exports = { Stats }

@@ -1,0 +1,187 @@
+'use strict'
+
+const fs = require('node:fs')
+const { PlcError } = require('../../error')
+const { createPace, pacedBinding } = require('./paced-binding')
+const { goneError, openError } = require('./port-errors')
+
+const flow = {
+  none: {},
+  rtscts: { rtscts: true },
+  xonxoff: { xon: true, xoff: true }
+}
+
+const portOptions = ({ path, baudRate, dataBits, parity, stopBits, flowControl }) => ({
+  path,
+  baudRate,
+  dataBits,
+  parity,
+  stopBits,
+  ...flow[flowControl],
+  autoOpen: false
+})
+
+/** What DTR and RTS are to be after opening; null: as the system leaves them (both on). */
+const signals = ({ dtr, rts }) => {
+  if (dtr === 'unchanged' && rts === 'unchanged') return null
+  return { dtr: dtr !== 'off', rts: rts !== 'off' }
+}
+
+/** The device behind a stable name: what is claimed. A name that leads nowhere yet stands for itself. */
+const realPath = path => {
+  try {
+    return fs.realpathSync(path)
+  } catch {
+    return path
+  }
+}
+
+/** One port, opened once. serialport 13 through a binding that reads by wire time. */
+class SerialTransport {
+  #settings
+  #clock
+  #binding
+  #pace
+  /** @type {any} */
+  #port = null
+  /** @type {any} */
+  #handlers = null
+  #delay = null
+  #state = 'new'
+  #closed = []
+  #writes = new Set()
+
+  constructor({ settings, clock, binding }) {
+    this.#settings = settings
+    this.#clock = clock
+    this.#binding = binding
+    this.#pace = createPace(clock)
+  }
+
+  id() {
+    return realPath(this.#settings.path)
+  }
+
+  open(handlers) {
+    // serialport is loaded when the first port is opened: a line over TCP needs no native code
+    const { SerialPort } = require('serialport')
+    this.#handlers = handlers
+    this.#state = 'opening'
+    const binding = pacedBinding(this.#binding ?? SerialPort.binding, this.#pace)
+    const port = new SerialPort({ ...portOptions(this.#settings), binding: /** @type {any} */ (binding) })
+    this.#port = port
+    port.on('error', error => this.#lose(error))
+    port.on('close', error => this.#lose(error))
+    port.open(error => (error ? this.#notOpened(error) : this.#setSignals()))
+  }
+
+  #notOpened(error) {
+    const wanted = this.#state === 'opening'
+    this.#state = 'closed'
+    if (wanted) this.#handlers.failed(openError(error, this.#settings.path))
+    this.#tellClosed()
+  }
+
+  #setSignals() {
+    const wanted = signals(this.#settings)
+    if (this.#state !== 'opening') return this.#shut()
+    if (!wanted) return this.#wait()
+    this.#port.set(wanted, error => {
+      if (this.#state !== 'opening') return this.#shut()
+      if (!error) return this.#wait()
+      this.#state = 'failing'
+      this.#handlers.failed(openError(error, this.#settings.path))
+      this.#shut()
+    })
+  }
+
+  /** Converters that live on DTR and RTS need a moment. */
+  #wait() {
+    const { openDelay } = this.#settings
+    if (openDelay > 0) this.#delay = this.#clock.setTimer(() => this.#ready(), openDelay)
+    else this.#ready()
+  }
+
+  #ready() {
+    if (this.#state !== 'opening') return
+    this.#state = 'open'
+    this.#port.on('data', bytes => {
+      if (this.#state === 'open') this.#handlers.data(bytes)
+    })
+    this.#handlers.opened()
+  }
+
+  /** The port closed or failed by itself; both may be told, and twice. */
+  #lose(error) {
+    const was = this.#state
+    this.#state = 'closed'
+    this.#pace.stop()
+    this.#clock.clearTimer(this.#delay)
+    const gone = goneError(error, this.#settings.path)
+    for (const done of [...this.#writes]) done(gone)
+    if (was === 'open') this.#handlers.closed(gone)
+    if (was === 'opening') this.#handlers.failed(gone)
+    if (this.#port.isOpen) this.#port.close(() => this.#tellClosed())
+    else if (!this.#port.closing) this.#tellClosed()
+  }
+
+  write(bytes, done) {
+    const { path } = this.#settings
+    // a write to a closed port never calls back, and its bytes would go out at a later open
+    if (this.#state !== 'open' || !this.#port.isOpen) return done(new PlcError('PORT_GONE', { path }))
+    const finish = error => {
+      if (!this.#writes.delete(finish)) return
+      done(error ? goneError(error, path) : undefined)
+    }
+    this.#writes.add(finish)
+    this.#port.write(bytes, finish)
+  }
+
+  hint(_count, at) {
+    this.#pace.hint(at)
+  }
+
+  /** A request was not answered: is the port still there? */
+  check() {
+    if (this.#binding) return
+    fs.stat(this.#settings.path, error => {
+      if (error?.code === 'ENOENT' && this.#state === 'open') this.#lose(error)
+    })
+  }
+
+  close(done) {
+    this.#closed.push(done)
+    this.#clock.clearTimer(this.#delay)
+    const was = this.#state
+    if (was === 'closed' || was === 'new') return this.#tellClosed()
+    this.#state = 'closing'
+    this.#pace.stop()
+    this.#writes.clear()
+    if (was === 'open' || (was === 'opening' && this.#port.isOpen)) this.#shut()
+  }
+
+  #shut() {
+    if (!this.#port.isOpen) return
+    this.#port.close(() => {
+      this.#state = 'closed'
+      this.#tellClosed()
+    })
+  }
+
+  #tellClosed() {
+    const waiting = this.#closed
+    this.#closed = []
+    for (const done of waiting) done()
+  }
+}
+
+/**
+ * A factory of serial transports over a given binding.
+ * @param {{ binding?: any }} [options] default: the binding of this operating system
+ */
+const serialOver =
+  ({ binding = null } = {}) =>
+  (settings, clock) =>
+    new SerialTransport({ settings, clock, binding })
+
+module.exports = { serial: serialOver(), serialOver }

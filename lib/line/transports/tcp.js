@@ -1,0 +1,122 @@
+'use strict'
+
+const net = require('node:net')
+const { PlcError } = require('../../error')
+
+const CLOSE_LIMIT = 300
+/** After so many requests in a row without an answer the connection is taken for half-open; then after twice as many, … */
+const SILENT = 5
+const MOST_SILENT = 160
+
+const REASONS = {
+  ECONNREFUSED: 'nothing listens there',
+  EHOSTUNREACH: 'the host cannot be reached',
+  ENETUNREACH: 'the network cannot be reached',
+  ENOTFOUND: 'the name of the host is not known',
+  EAI_AGAIN: 'the name of the host cannot be resolved now',
+  ECONNRESET: 'the other side broke it off',
+  ETIMEDOUT: 'no answer'
+}
+
+/** 5, 10, 20, … : a line whose stations are all off is not reconnected for ever. */
+const isSuspicious = silent => {
+  for (let count = SILENT; count <= MOST_SILENT; count *= 2) if (silent === count) return true
+  return silent > MOST_SILENT && silent % MOST_SILENT === 0
+}
+
+/** One connection to a serial server, or to anything else that carries the bytes of the line over TCP. */
+class TcpTransport {
+  #settings
+  #clock
+  #path
+  /** @type {any} */
+  #socket = null
+  /** @type {any} */
+  #handlers = null
+  #timer = null
+  #open = false
+  #ended = false
+
+  constructor(settings, clock) {
+    this.#settings = settings
+    this.#clock = clock
+    this.#path = `${settings.host}:${settings.port}`
+  }
+
+  id() {
+    return this.#path.toLowerCase()
+  }
+
+  open(handlers) {
+    const { host, port, keepAlive, connectTimeout } = this.#settings
+    const socket = net.connect({ host, port, noDelay: true })
+    this.#socket = socket
+    this.#handlers = handlers
+    if (keepAlive > 0) socket.setKeepAlive(true, keepAlive)
+    this.#timer = this.#clock.setTimer(() => this.#lose(`no connection within ${connectTimeout} ms`), connectTimeout)
+    socket.once('connect', () => this.#opened())
+    socket.on('data', bytes => {
+      if (!this.#ended) handlers.data(bytes)
+    })
+    socket.on('error', error => this.#lose(REASONS[error['code']] ?? error.message))
+    socket.on('end', () => this.#lose('the serial server closed the connection'))
+    socket.on('close', () => this.#lose('the connection was closed'))
+  }
+
+  #opened() {
+    if (this.#ended) return
+    this.#clock.clearTimer(this.#timer)
+    this.#open = true
+    this.#handlers.opened()
+  }
+
+  #lose(reason) {
+    if (this.#ended) return
+    this.#ended = true
+    this.#clock.clearTimer(this.#timer)
+    this.#socket.destroy()
+    if (this.#open) this.#handlers.closed(this.#broken(reason))
+    else this.#handlers.failed(new PlcError('CONNECT_FAILED', { path: this.#path, reason }))
+  }
+
+  #broken(reason) {
+    return new PlcError('LINE_DOWN', { line: this.#path, reason })
+  }
+
+  write(bytes, done) {
+    if (!this.#open || this.#ended) return done(this.#broken('the connection is not open'))
+    this.#socket.write(bytes, error => done(error ? this.#broken(error.message) : undefined))
+  }
+
+  /** Nothing is known before the bytes come: the network has its own time. */
+  hint() {}
+
+  /** @param {number} silent requests in a row without an answer */
+  check(silent) {
+    if (isSuspicious(silent)) this.#lose(`${silent} requests in a row without an answer: the connection is dead`)
+  }
+
+  close(done) {
+    const socket = this.#socket
+    const wasOpen = this.#open && !this.#ended
+    this.#ended = true
+    this.#clock.clearTimer(this.#timer)
+    if (!socket || socket.closed) return done()
+    socket.once('close', () => {
+      this.#clock.clearTimer(this.#timer)
+      done()
+    })
+    if (!wasOpen) return socket.destroy()
+    // what was written goes out before the connection ends
+    this.#timer = this.#clock.setTimer(() => socket.destroy(), CLOSE_LIMIT)
+    socket.end(() => socket.destroy())
+  }
+}
+
+/**
+ * @param {any} settings normalised: host, port, connectTimeout, keepAlive
+ * @param {import('../clock').Clock} clock
+ */
+const tcp = (settings, clock) => new TcpTransport(settings, clock)
+
+module.exports = { tcp }

@@ -42,11 +42,11 @@ function expectedAnswers(query, { steps = 2, phase = 'query', nonStandardAck = f
 }
 
 /**
- * What a complete answer says; the frame was accepted by the match of {@link module:match}.
+ * What a complete answer says, as accepted by `answerTo` (match.js).
  * @param {import('./frame').Frame} frame
  * @param {Query} query
  * @param {{ steps?: 2|4, phase?: Phase, nonStandardAck?: boolean, station?: number }} [options]
- * @returns {{ values: Array<boolean|number>|true, nonStandard: boolean } | { acknowledged: true }}
+ * @returns {{ values: Array<boolean|number>|true|null, nonStandard: boolean }} values null: a QA, the values come after an RR
  * @throws {PlcError} PLC_WRONG_FUNCTION, PLC_OUT_OF_RANGE, PLC_WRONG_FRAME, PLC_NOT_PERFORMED, PLC_FRAME_TOO_LONG, PLC_NO_SERVICE,
  *   BAD_ANSWER
  */
@@ -57,7 +57,7 @@ function readAnswer(frame, query, options = {}) {
   if (!found) throw new PlcError('BAD_ANSWER', { station, reason: `function ${hex(fn)} with ${info.length} bytes` })
   if (found.kind === 'error') throw plcError(info[0], { station, query })
   if (found.kind === 'noService') throw new PlcError('PLC_NO_SERVICE', { station })
-  if (found.kind === 'acknowledge') return { acknowledged: true }
+  if (found.kind === 'acknowledge') return { values: null, nonStandard: false }
   if (found.kind === 'nonStandard') return { values: true, nonStandard: true }
   return { values: decodeValues(query, info, station), nonStandard: false }
 }

@@ -118,6 +118,7 @@ function trust(name, given, { base, words, as, old }) {
   const same = old && old.base === base && old.words === words && old.as === as
   /** @type {{ certainty: Certainty, writable: boolean }} */
   const known = same ? old : { certainty: 'unconfirmed', writable: false }
+  /** @type {{ certainty: Certainty, writable: boolean }} */
   const sure = confirmed ? { certainty: 'certain', writable: true } : known
   if (writable && !sure.writable) throw bad(name, 'it can be writable only if it is confirmed')
   return { certainty: sure.certainty, writable: sure.writable && writable !== false, note: note.slice(0, 100) }

@@ -1,0 +1,109 @@
+'use strict'
+const { classify, expectedAnswers } = require('./answer')
+const { crcFits, HEADER, MOST_INFO, OVERHEAD, SHORTEST } = require('./frame')
+
+/**
+ * Verdicts of a match; contract in docs/architecture.md.
+ * @typedef {{ need: number, ours?: boolean } | { take: number } | { skip: number } | { bad: string, length: number }} Verdict
+ * @typedef {import('./query').Query} Query
+ * @typedef {'nothing'|'begins'|'ours'|'other'} Candidate
+ */
+
+const GLOBAL_STATION = 255
+const LAST_STATION = 191
+
+/**
+ * Recognises the answer to a query among the bytes received. Only the exact header is looked for (receiver, sender, function and length), and
+ * a candidate that is still incomplete keeps the ones behind it waiting: what stands inside its data is never taken for a frame.
+ * @param {Query} query
+ * @param {object} options
+ * @param {number} options.station 0..191, or 255: then the answer comes from 255 or from the PLC's own number
+ * @param {number} options.master ID that the query was sent from; answers to any other are not ours
+ * @param {2|4} [options.steps]
+ * @param {'query'|'request'} [options.phase] what the answer follows: a Q, or an RR
+ * @param {boolean} [options.nonStandardAck] take $A2 ($82) for a word or mixed write, as the manual prints it; only if no bit write to the
+ *   station is unanswered
+ * @param {number} [options.seenStation] number under which station 255 was seen to answer in this conversation
+ * @param {Uint8Array} [options.sent] own bytes: their echo is stepped over, also where it is damaged, with all that it holds
+ * @param {readonly number[]} [options.late] older master IDs to which an answer may still come: stepped over as whole frames
+ * @returns {(bytes: Uint8Array) => Verdict}
+ */
+function answerTo(query, options) {
+  const { station, master, seenStation, sent, late = [] } = options
+  const expected = expectedAnswers(query, options)
+  const functions = new Set(expected.map(each => each.fn))
+  const headers = new Set(expected.map(each => (each.fn << 8) | (each.length & 0xff)))
+  const isStation = id =>
+    station === GLOBAL_STATION && seenStation === undefined
+      ? id === GLOBAL_STATION || id <= LAST_STATION
+      : id === station || id === seenStation
+
+  /** @returns {Candidate} */
+  const look = (bytes, at) => {
+    const left = bytes.length - at
+    if (bytes[at] === master) {
+      if (left > 1 && !isStation(bytes[at + 1])) return 'nothing'
+      if (left > 2 && !functions.has(bytes[at + 2])) return 'nothing'
+      if (left < HEADER) return 'begins'
+      return headers.has((bytes[at + 2] << 8) | bytes[at + 3]) ? 'ours' : 'nothing'
+    }
+    if (sent && startsLike(bytes, at, sent)) return left < HEADER ? 'begins' : 'other'
+    return late.includes(bytes[at]) ? lookLate(bytes, at, isStation) : 'nothing'
+  }
+  const accepts = (bytes, at, length) =>
+    classify(bytes[at + 2], bytes.subarray(at + HEADER, at + length - 2), expected) !== undefined
+
+  return bytes => judge(bytes, look, accepts)
+}
+
+const lengthAt = (bytes, at) => (bytes[at + 3] || MOST_INFO) + OVERHEAD
+
+function startsLike(bytes, at, sent) {
+  for (let i = 0; i < HEADER && at + i < bytes.length; i++) if (bytes[at + i] !== sent[i]) return false
+  return true
+}
+
+// only reads: the answers to writes hold no data in which a frame could stand
+const LATE_READS = [0x81, 0x83, 0x85, 0xa1, 0xa3, 0xa5]
+
+/** @returns {Candidate} */
+function lookLate(bytes, at, isStation) {
+  const left = bytes.length - at
+  if (left > 1 && !isStation(bytes[at + 1])) return 'nothing'
+  if (left > 2 && !LATE_READS.includes(bytes[at + 2])) return 'nothing'
+  return left < HEADER ? 'begins' : 'other'
+}
+
+/**
+ * @param {Uint8Array} bytes
+ * @param {(bytes: Uint8Array, at: number) => Candidate} look
+ * @param {(bytes: Uint8Array, at: number, length: number) => boolean} accepts
+ * @returns {Verdict}
+ */
+function judge(bytes, look, accepts) {
+  let at = 0
+  /** @type {Candidate} */
+  let candidate = 'nothing'
+  while (at < bytes.length && (candidate = look(bytes, at)) === 'nothing') at++
+  if (at > 0) return { skip: at }
+  if (bytes.length === 0 || candidate === 'begins') return { need: SHORTEST }
+  const length = lengthAt(bytes, 0)
+  if (bytes.length < length) return { need: length, ours: candidate === 'ours' }
+  if (candidate === 'other') return { skip: length }
+  if (!crcFits(bytes, 0, length)) return afterDamage(bytes, length, { look, accepts })
+  return accepts(bytes, 0, length) ? { take: length } : { skip: length }
+}
+
+// What looked like the answer is damaged. It may have been noise before the real one, so later candidates are tried; but an error frame that
+// lies wholly inside is part of the damaged data.
+function afterDamage(bytes, length, { look, accepts }) {
+  for (let at = 1; at < bytes.length; at++) {
+    if (look(bytes, at) !== 'ours') continue
+    const end = at + lengthAt(bytes, at)
+    if (end > bytes.length) return { need: end, ours: true }
+    if (end > length && crcFits(bytes, at, end - at) && accepts(bytes, at, end - at)) return { skip: at }
+  }
+  return { bad: 'CRC', length }
+}
+
+module.exports = { answerTo }

@@ -3,22 +3,22 @@
 const { EventEmitter } = require('node:events')
 const { PlcError } = require('../error')
 const { Connection } = require('./connection')
+const { Driver } = require('./driver')
 const { Echo } = require('./echo')
 const { Exchange } = require('./exchange')
 const { Quarantine } = require('./quarantine')
-const { Queue } = require('./queue')
-const { Run, copyOf, isLineFailure } = require('./run')
 const { Recorder } = require('./recorder')
+const { copyOf, isLineFailure } = require('./run')
+const { Scheduler } = require('./scheduler')
 const { lineTimes } = require('./timing')
 
 /** A frame that is being sent is never cut; nor is closing held up longer than this, ms. */
 const MOST_SENDING = 1000
-
-/** After a failure with one of these an answer may still come. */
-const UNANSWERED = new Set(['TIMEOUT', 'INCOMPLETE', 'WRITE_STALLED'])
+/** A jammed line is looked at so often at most, ms. */
+const LEAST_CALM = 20
 
 /**
- * One wire: who goes next, what happens when nobody answers, and how it opens and closes.
+ * One wire: joins who waits, who talks and how it opens, and is what others see of it.
  * Synchronous: everything happens inside a timer, the arrival of bytes, or a call; promises only at the edge.
  * Events: `state` (state, reason) and `event` ({ event, station, … }).
  */
@@ -26,23 +26,19 @@ class Line extends EventEmitter {
   #clock
   #settings
   #times
-  #queue
+  #scheduler
   #quarantine
   #echo
   #exchange
+  #driver
   #connection
   #recorder
   /** @type {any} */
   #state = 'closed'
   /** @type {any} */
   #reason = null
-  /** @type {any} */
-  #active = null
-  #held = new Map()
-  #wake = null
-  #wakeAt = Infinity
   #grace = null
-  #quiet = null
+  #calming = null
   #silent = 0
   #closing = false
 
@@ -58,11 +54,12 @@ class Line extends EventEmitter {
     this.#settings = settings
     this.#times = lineTimes(settings)
     this.#recorder = new Recorder(clock)
-    this.#queue = new Queue({ limit: settings.queueLimit, most: settings.writesBeforePoll })
     this.#quarantine = new Quarantine({ clock, memories, late: (fact, frame) => this.#late(fact, frame) })
+    const readyAt = station => this.#quarantine.readyAt(station)
+    this.#scheduler = new Scheduler({ clock, settings, readyAt, awake: () => this.#driver.pump() })
     this.#echo = new Echo(settings.echo)
-    const link = this.#link()
-    this.#exchange = new Exchange({ clock, settings, times: this.#times, echo: this.#echo, link })
+    this.#exchange = new Exchange({ clock, settings, times: this.#times, echo: this.#echo, link: this.#link() })
+    this.#driver = this.#makeDriver()
     const told = {
       opened: () => this.#opened(),
       data: bytes => this.#data(bytes),
@@ -80,6 +77,21 @@ class Line extends EventEmitter {
       skipped: bytes => this.#unclaimed('skipped', bytes),
       stray: bytes => this.#unclaimed('stray', bytes)
     }
+  }
+
+  #makeDriver() {
+    const parts = {
+      exchange: this.#exchange,
+      scheduler: this.#scheduler,
+      quarantine: this.#quarantine,
+      recorder: this.#recorder
+    }
+    const least = { gap: this.#times.gap, latenessBound: this.#settings.latenessBound }
+    return new Driver(parts, least, {
+      refusal: () => (this.#state === 'open' && !this.#closing ? null : this.#refusal()),
+      answered: () => this.#answered(),
+      troubled: error => this.#troubled(error)
+    })
   }
 
   /** @returns {'closed'|'opening'|'open'|'waiting'|'jammed'} */
@@ -104,7 +116,7 @@ class Line extends EventEmitter {
 
   /** Counters since the line was made; see docs/nodes.md. */
   stats() {
-    return { ...this.#recorder.stats.snapshot(), waiting: this.#queue.size }
+    return { ...this.#recorder.stats.snapshot(), waiting: this.#scheduler.size }
   }
 
   /** The last 200 frames, oldest first: `{ t, dir, station, bytes (hex), note }`. */
@@ -117,11 +129,65 @@ class Line extends EventEmitter {
     return this.#quarantine.memory(station)
   }
 
+  // --- requests
+
+  /**
+   * @param {object} lease who asks
+   * @param {() => Generator} make
+   * @param {any} options of `lease.run`, complete
+   * @returns {Promise<any>}
+   */
+  run(lease, make, options) {
+    const refusal = this.#closing || this.#state !== 'opening' ? this.#refusal() : null
+    if (refusal) return Promise.reject(refusal)
+    const shared = this.#scheduler.shared(options.share)
+    if (shared) {
+      this.#recorder.stats.count('overruns', options.station)
+      return shared.join(lease)
+    }
+    if (this.#scheduler.full) {
+      this.#recorder.stats.count('queueFull')
+      const most = this.#settings.queueLimit
+      return Promise.reject(new PlcError('QUEUE_FULL', { line: this.name, most, sent: false }))
+    }
+    const late = limit => new PlcError('DEADLINE', { line: this.name, limit })
+    const promise = this.#scheduler.add(make, options, late).join(lease)
+    this.#driver.pump()
+    return promise
+  }
+
+  /** Why nothing can be sent now: a PlcError, or null. */
+  #refusal() {
+    if (this.#closing || this.#state === 'closed') return new PlcError('LINE_CLOSED', { line: this.name, sent: false })
+    if (this.#reason) return copyOf(this.#reason, { sent: false })
+    return this.#state === 'opening' ? this.#slow() : null
+  }
+
+  #slow() {
+    return new PlcError('LINE_DOWN', { line: this.name, reason: 'it is still being opened', sent: false })
+  }
+
+  /** A lease was released: what only it waits for ends. */
+  drop(lease) {
+    this.#driver.drop(lease, new PlcError('LINE_CLOSED', { line: this.name }))
+  }
+
+  #answered() {
+    this.#silent = 0
+    this.#connection.proven()
+  }
+
+  #troubled(error) {
+    if (error.code === 'TIMEOUT') this.#connection.check(++this.#silent)
+    else if (error.code === 'LINE_JAMMED') this.#jam(error)
+    else if (isLineFailure(error)) this.#restart(error)
+  }
+
   // --- opening and closing
 
   open() {
     this.#become('opening', null)
-    this.#grace = this.#clock.setTimer(() => this.#graceOver(), this.#settings.openGrace)
+    this.#grace = this.#clock.setTimer(() => this.#fall(this.#slow()), this.#settings.openGrace)
   }
 
   /** The port is free: the transport may open it. */
@@ -136,35 +202,31 @@ class Line extends EventEmitter {
     this.emit('state', state, reason)
   }
 
-  #graceOver() {
-    this.#grace = null
-    const reason = new PlcError('LINE_DOWN', { line: this.name, reason: 'it is still being opened' })
-    this.#become('waiting', reason)
-    this.#rejectWaiting(reason)
-  }
-
   #opened() {
-    this.#clearGrace()
+    this.#stopTimers()
     this.#echo.reset()
     this.#quarantine.opened()
     this.#become('open', null)
-    this.#pump()
+    this.#driver.pump()
   }
 
-  #clearGrace() {
+  #stopTimers() {
     this.#clock.clearTimer(this.#grace)
-    this.#grace = null
+    this.#clock.clearTimer(this.#calming)
+  }
+
+  /** Nothing can be sent for this reason: all that waits ends, so that nothing hangs. */
+  #fall(reason, state = 'waiting') {
+    this.#stopTimers()
+    this.#become(state, reason)
+    this.#driver.breakOff(reason)
+    this.#scheduler.rejectAll(reason)
   }
 
   #down(error, wasOpen) {
     if (this.#closing) return
-    const reason = this.#asReason(error)
-    this.#clearGrace()
-    this.#stopWatching()
     if (wasOpen) this.#recorder.stats.count('reconnects')
-    this.#become('waiting', reason)
-    this.#breakOff(reason)
-    this.#rejectWaiting(reason)
+    this.#fall(this.#asReason(error))
   }
 
   #asReason(error) {
@@ -173,47 +235,21 @@ class Line extends EventEmitter {
     return new PlcError('LINE_DOWN', { line: this.name, reason, cause: error })
   }
 
-  /** The step on the wire ends with this error; its conversation may still say what that means. */
-  #breakOff(reason) {
-    const run = this.#active
-    if (!run) return
-    const facts = this.#exchange.abort()
-    this.#abandoned(run, facts)
-    this.#active = null
-    this.#resume(run, copyOf(reason, { sent: facts?.sent ?? false }))
-  }
-
-  #abandoned(run, facts) {
-    if (facts?.sent) this.#quarantine.failed({ ...run.step, ...facts, station: run.station })
-  }
-
-  #rejectWaiting(reason) {
-    for (const run of this.#queue.all()) this.#discard(run, reason)
-  }
-
-  /** A run that is not on the wire ends. */
-  #discard(run, reason) {
-    this.#queue.remove(run)
-    this.#free(run)
-    run.stop(reason)
-  }
-
-  #free(run) {
-    this.#clock.clearTimer(run.deadlineTimer)
-    if (this.#held.get(run.station) === run) this.#held.delete(run.station)
+  /** A port that takes no bytes is closed: else they would go out at some later time. */
+  #restart(error) {
+    this.#fall(error)
+    this.#connection.restart(error)
   }
 
   /** Ends all that waits, lets a frame on the wire end, closes the port. @param {() => void} done */
   close(done) {
-    if (this.#closing) return done()
     this.#closing = true
     const reason = new PlcError('LINE_CLOSED', { line: this.name })
     const sending = Math.min(MOST_SENDING, this.#exchange.sendEnd - this.#clock.now())
-    this.#clearGrace()
-    this.#stopWatching()
-    this.#clock.clearTimer(this.#wake)
-    this.#rejectWaiting(reason)
-    this.#stopActive(reason)
+    this.#stopTimers()
+    this.#scheduler.sleep()
+    this.#scheduler.rejectAll(reason)
+    this.#driver.stop(reason)
     const shut = () =>
       this.#connection.stop(() => {
         this.#become('closed', null)
@@ -221,164 +257,6 @@ class Line extends EventEmitter {
       })
     if (sending > 0 && this.#connection.isOpen) this.#clock.setTimer(shut, sending)
     else shut()
-  }
-
-  #stopActive(reason) {
-    const run = this.#active
-    if (!run) return
-    this.#abandoned(run, this.#exchange.abort())
-    this.#active = null
-    run.stop(reason)
-  }
-
-  // --- requests
-
-  /**
-   * @param {object} lease who asks
-   * @param {() => Generator} make
-   * @param {any} options of `lease.run`, complete
-   * @returns {Promise<any>}
-   */
-  run(lease, make, options) {
-    const refusal = this.#refusal()
-    if (refusal) return Promise.reject(refusal)
-    const shared = options.share === null ? undefined : this.#queue.waiting(options.share)
-    if (shared) {
-      this.#recorder.stats.count('overruns', options.station)
-      return shared.join(lease)
-    }
-    if (this.#queue.full) {
-      this.#recorder.stats.count('queueFull')
-      return Promise.reject(
-        new PlcError('QUEUE_FULL', { line: this.name, most: this.#settings.queueLimit, sent: false })
-      )
-    }
-    const run = new Run(make, options)
-    const promise = run.join(lease)
-    this.#queue.add(run)
-    if (options.deadline > 0) {
-      run.deadlineTimer = this.#clock.setTimer(() => this.#overdue(run, options.deadline), options.deadline)
-    }
-    this.#pump()
-    return promise
-  }
-
-  #refusal() {
-    if (this.#closing || this.#state === 'closed') return new PlcError('LINE_CLOSED', { line: this.name, sent: false })
-    return this.#reason ? copyOf(this.#reason, { sent: false }) : null
-  }
-
-  #overdue(run, limit) {
-    this.#discard(run, new PlcError('DEADLINE', { line: this.name, limit }))
-  }
-
-  /** A lease was released: what only it waits for ends. */
-  drop(lease) {
-    const reason = new PlcError('LINE_CLOSED', { line: this.name })
-    const runs = this.#queue.all()
-    for (const run of runs) {
-      run.leave(lease, reason)
-      if (!run.wanted) this.#discard(run, reason)
-    }
-    const active = this.#active
-    if (!active) return
-    active.leave(lease, reason)
-    if (active.wanted) return
-    this.#stopActive(reason)
-    this.#pump()
-  }
-
-  #ready = run => {
-    const holder = this.#held.get(run.station)
-    return (!holder || holder === run) && this.#quarantine.readyAt(run.station) <= this.#clock.now()
-  }
-
-  /** Lets the next one go, if the line is free. */
-  #pump() {
-    while (!this.#active && this.#state === 'open' && !this.#closing && this.#queue.size > 0) {
-      const run = this.#queue.next(this.#ready)
-      if (!run) return this.#wakeLater()
-      this.#free(run)
-      if (run.started) this.#go(run)
-      else this.#resume(run, null)
-    }
-  }
-
-  #wakeLater() {
-    let at = Infinity
-    for (const run of this.#queue.heads()) {
-      const holder = this.#held.get(run.station)
-      if (!holder || holder === run) at = Math.min(at, this.#quarantine.readyAt(run.station))
-    }
-    if (at === Infinity || (this.#wake !== null && this.#wakeAt <= at)) return
-    this.#clock.clearTimer(this.#wake)
-    this.#wakeAt = at
-    this.#wake = this.#clock.setTimer(() => {
-      this.#wake = null
-      this.#pump()
-    }, at - this.#clock.now())
-  }
-
-  /** The conversation goes on by one step: at once, or when its station may be asked again. */
-  #resume(run, error, answer) {
-    if (!run.advance(error, answer)) return
-    const refusal = this.#refusal()
-    if (refusal) return void run.stop(refusal)
-    if (this.#quarantine.readyAt(run.station) <= this.#clock.now()) return this.#go(run)
-    // an RR of another conversation in between would repeat the wrong query: the station stays with this one
-    this.#held.set(run.station, run)
-    this.#queue.add(run, { first: true })
-  }
-
-  #go(run) {
-    this.#active = run
-    const { step, station } = run
-    const gap = Math.max(this.#times.gap, step.gap ?? 0, run.gap)
-    this.#exchange.start(step, {
-      gap,
-      station,
-      sent: () => this.#sent(run),
-      done: (error, answer, facts) => this.#ended(run, error, answer, facts)
-    })
-  }
-
-  #sent(run) {
-    run.sent = true
-    const { station, step } = run
-    if (step.match) this.#quarantine.asked(station, { timeout: step.timeout, latenessBound: run.latenessBound })
-    this.#recorder.sent(station, step.send, run.label)
-  }
-
-  #ended(run, error, answer, facts) {
-    const { station, step } = run
-    this.#recorder.ended({ station, step, error, answer, facts })
-    this.#active = null
-    if (error) this.#troubled(run, error, answer, facts)
-    else if (step.match) this.#answered(station, answer)
-    this.#resume(run, error, answer)
-    this.#pump()
-  }
-
-  #answered(station, answer) {
-    this.#silent = 0
-    this.#connection.proven()
-    this.#quarantine.answered(station, answer)
-  }
-
-  #troubled({ station, step }, error, seen, facts) {
-    if (facts.sent && (UNANSWERED.has(error.code) || isLineFailure(error))) {
-      this.#quarantine.failed({ station, match: step.match, timeout: step.timeout, due: facts.due, seen })
-    }
-    if (error.code === 'TIMEOUT') this.#connection.check(++this.#silent)
-    if (error.code === 'LINE_JAMMED') this.#jam(error)
-    else if (isLineFailure(error)) this.#restart(error)
-  }
-
-  /** A port that takes no bytes is closed: else they would go out at some later time. */
-  #restart(error) {
-    this.#become('waiting', error)
-    this.#rejectWaiting(error)
-    this.#connection.restart(error)
   }
 
   // --- bytes that nobody asked for
@@ -402,29 +280,22 @@ class Line extends EventEmitter {
 
   /** Nothing is sent into a flood; the first silence ends it. */
   #jam(error) {
-    this.#become('jammed', error)
-    const { remedy } = error
-    this.emit('event', { event: 'jammed', station: null, since: this.#clock.wall(), cause: error.message, remedy })
-    this.#rejectWaiting(error)
-    this.#watchSilence()
+    this.#fall(error, 'jammed')
+    const { message, remedy } = error
+    this.emit('event', { event: 'jammed', station: null, since: this.#clock.wall(), cause: message, remedy })
+    this.#awaitCalm()
   }
 
-  #watchSilence() {
-    const wait = Math.max(20, this.#times.gap)
+  #awaitCalm() {
+    if (this.#state !== 'jammed') return
+    const wait = Math.max(LEAST_CALM, this.#times.gap)
     const rest = this.#exchange.quietSince + wait - this.#clock.now()
-    if (rest > 0) this.#quiet = this.#clock.setTimer(() => this.#watchSilence(), rest)
-    else this.#calm()
-  }
-
-  #calm() {
-    this.#quiet = null
+    if (rest > 0) {
+      this.#calming = this.#clock.setTimer(() => this.#awaitCalm(), rest)
+      return
+    }
     this.#become('open', null)
-    this.#pump()
-  }
-
-  #stopWatching() {
-    this.#clock.clearTimer(this.#quiet)
-    this.#quiet = null
+    this.#driver.pump()
   }
 }
 

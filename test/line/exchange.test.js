@@ -21,7 +21,8 @@ describe('line: one exchange', () => {
 
   it('takes an answer that comes in single bytes', async () => {
     const { lease, run } = createBench({
-      onQuery: (bytes, wire) => [...toy.answer(5, [1, 2])].forEach((b, i) => wire.reply(Buffer.from([b]), { after: 5 + i }))
+      onQuery: (bytes, wire) =>
+        [...toy.answer(5, [1, 2])].forEach((b, i) => wire.reply(Buffer.from([b]), { after: 5 + i }))
     })
     assert.deepEqual(await run(lease.run(() => toy.ask(5), { station: 5 })), [1, 2])
     await run(lease.release())

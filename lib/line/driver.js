@@ -1,0 +1,124 @@
+'use strict'
+
+const { copyOf } = require('./run')
+
+/**
+ * Drives conversations: takes the next run when the wire is free, puts its steps on the wire, gives it the answers and
+ * failures, and tells the quarantine what was not answered.
+ */
+class Driver {
+  #exchange
+  #scheduler
+  #quarantine
+  #recorder
+  #host
+  #least
+  /** @type {any} the run whose step is on the wire */
+  #active = null
+
+  /**
+   * @param {any} parts `{ exchange, scheduler, quarantine, recorder }` of the line
+   * @param {{ gap: number, latenessBound: number }} least of the line, in ms; runs and steps may ask for more
+   * @param {{ refusal: () => any, answered: () => void, troubled: (error: any) => void }} host
+   *   refusal: why nothing can be sent now, or null
+   */
+  constructor({ exchange, scheduler, quarantine, recorder }, least, host) {
+    this.#exchange = exchange
+    this.#scheduler = scheduler
+    this.#quarantine = quarantine
+    this.#recorder = recorder
+    this.#least = least
+    this.#host = host
+  }
+
+  /** Lets the next one go, if the wire is free. */
+  pump() {
+    while (!this.#active && this.#scheduler.size > 0 && !this.#host.refusal()) {
+      const run = this.#scheduler.next()
+      if (!run) return
+      if (run.started) this.#go(run)
+      else this.#resume(run, null)
+    }
+  }
+
+  /** The conversation goes on by one step: at once, or when its station may be asked again. */
+  #resume(run, error, answer) {
+    if (!run.advance(error, answer)) return
+    const refusal = this.#host.refusal()
+    if (refusal) run.stop(refusal)
+    else if (this.#scheduler.isReady(run.station)) this.#go(run)
+    else this.#scheduler.hold(run)
+  }
+
+  #go(run) {
+    this.#active = run
+    const { step, station } = run
+    this.#exchange.start(step, {
+      gap: Math.max(this.#least.gap, step.gap ?? 0, run.gap),
+      station,
+      sent: () => this.#sent(run),
+      done: (error, answer, facts) => this.#ended(run, error, answer, facts)
+    })
+  }
+
+  #sent(run) {
+    run.sent = true
+    const { station, step } = run
+    const latenessBound = run.latenessBound || this.#least.latenessBound
+    if (step.match) this.#quarantine.asked(station, { timeout: step.timeout, latenessBound })
+    this.#recorder.sent(station, step.send, run.label)
+  }
+
+  #ended(run, error, answer, facts) {
+    const { station, step } = run
+    this.#recorder.ended({ station, step, error, answer, facts })
+    this.#active = null
+    if (error) {
+      // of a frame of full length nothing more can come; of all else something may
+      if (error.code !== 'CRC_ERROR') this.#unanswered(run, { ...facts, seen: answer })
+      this.#host.troubled(error)
+    } else if (step.match) {
+      this.#quarantine.answered(station, answer)
+      this.#host.answered()
+    }
+    this.#resume(run, error, answer)
+    this.pump()
+  }
+
+  #unanswered({ station, step }, facts) {
+    if (!facts?.sent || !step.match) return
+    this.#quarantine.failed({ station, match: step.match, timeout: step.timeout, due: facts.due, seen: facts.seen })
+  }
+
+  /** The wire broke: the step on it ends with this error, and its conversation may still say what that means. */
+  breakOff(reason) {
+    const run = this.#active
+    if (!run) return
+    const facts = this.#exchange.abort()
+    this.#unanswered(run, facts)
+    this.#active = null
+    this.#resume(run, copyOf(reason, { sent: facts?.sent ?? false }))
+  }
+
+  /** The run on the wire ends. */
+  stop(reason) {
+    const run = this.#active
+    if (!run) return
+    this.#unanswered(run, this.#exchange.abort())
+    this.#active = null
+    run.stop(reason)
+  }
+
+  /** What only this lease waits for ends. */
+  drop(lease, reason) {
+    this.#scheduler.drop(lease, reason)
+    const run = this.#active
+    if (!run) return
+    run.leave(lease, reason)
+    if (run.wanted) return
+    this.stop(reason)
+    this.pump()
+  }
+}
+
+module.exports = { Driver }

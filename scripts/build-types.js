@@ -30,6 +30,6 @@ const compiler = require.resolve('typescript/bin/tsc')
 try {
   execFileSync(process.execPath, [compiler, ...flags, ...doors], { cwd: root, stdio: ['ignore', 'pipe', 'inherit'] })
 } catch (error) {
-  process.stderr.write(String(error.stdout || error.message))
+  process.stderr.write(String(/** @type {any} */ (error).stdout || error))
   process.exitCode = 1
 }

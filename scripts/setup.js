@@ -59,12 +59,14 @@ function installedByHand(root) {
   })
 }
 
+const codeOf = error => /** @type {NodeJS.ErrnoException} */ (error).code
+
 const alive = pid => {
   try {
     process.kill(pid, 0)
     return true
   } catch (error) {
-    return error.code === 'EPERM'
+    return codeOf(error) === 'EPERM'
   }
 }
 
@@ -77,7 +79,7 @@ function tryLock(file) {
     fs.writeFileSync(file, own, { flag: 'wx' })
     return () => fs.rmSync(file, { force: true })
   } catch (error) {
-    if (error.code !== 'EEXIST') throw error
+    if (codeOf(error) !== 'EEXIST') throw error
   }
   let owner
   try {
@@ -86,7 +88,7 @@ function tryLock(file) {
     return null // released between the two calls: the next round gets it
   }
   const pid = Number.parseInt(owner, 10)
-  const age = Date.now() - fs.statSync(file, { throwIfNoEntry: false })?.mtimeMs
+  const age = Date.now() - (fs.statSync(file, { throwIfNoEntry: false })?.mtimeMs ?? Date.now())
   if (Number.isInteger(pid) ? !alive(pid) : age > 5000) {
     // rename, not unlink: of several that see the dead lock only one gets it out of the way
     const grave = `${file}.${randomUUID()}`
@@ -110,7 +112,8 @@ async function withLock(root, work) {
   let release = tryLock(file)
   if (!release && fs.existsSync(file)) say('another set-up is running in this folder, waiting for it')
   while (!release) {
-    if (Date.now() > until) throw new Error(`another set-up did not end within 10 minutes; if none runs, delete ${file}`)
+    if (Date.now() > until)
+      throw new Error(`another set-up did not end within 10 minutes; if none runs, delete ${file}`)
     await sleep(100)
     release = tryLock(file)
   }
@@ -135,6 +138,7 @@ const writable = folder => {
 
 /** npm's environment; with a home that cannot be written (containers, service users) its cache goes to the temp folder. */
 function npmEnvironment() {
+  /** @type {NodeJS.ProcessEnv} */
   const env = { ...process.env, npm_config_update_notifier: 'false', NODE_ENV: 'development' }
   const cache = env.npm_config_cache || path.join(os.homedir() || os.tmpdir(), '.npm')
   if (writable(cache)) return { env, done() {} }
@@ -166,7 +170,9 @@ async function install(root) {
     // npm's own output goes to stderr: stdout belongs to the command that comes after the set-up
     const end = await run(command, args, { cwd: root, env, shell, stdio: ['ignore', 2, 2] })
     if (end !== 0) {
-      throw new Error(`npm ci ended with ${end}. It needs the package registry once: check network, proxy and disk, then repeat.`)
+      throw new Error(
+        `npm ci ended with ${end}. It needs the package registry once: check network, proxy and disk, then repeat.`
+      )
     }
   } finally {
     done()

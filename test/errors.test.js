@@ -11,12 +11,15 @@ const codes = Object.keys(CODES)
 
 /** Codes as the sources name them: `PlcError('CODE'` and any string that is exactly a code. */
 function uses() {
-  const files = [...filesBelow('lib'), ...filesBelow('nodes')].filter(name => name.endsWith('.js') && name !== 'lib/error.js')
+  const files = [...filesBelow('lib'), ...filesBelow('nodes')].filter(
+    name => name.endsWith('.js') && name !== 'lib/error.js'
+  )
   const found = new Set()
   const unknown = []
   for (const file of files) {
     for (const text of strings(file)) if (codes.includes(text)) found.add(text)
-    for (const [, code] of read(file).matchAll(/PlcError\(\s*'(\w+)'/g)) if (!CODES[code]) unknown.push(`${file}: ${code}`)
+    for (const [, code] of read(file).matchAll(/PlcError\(\s*'(\w+)'/g))
+      if (!CODES[code]) unknown.push(`${file}: ${code}`)
   }
   return { found, unknown }
 }
@@ -38,7 +41,10 @@ describe('error codes', () => {
 
   it('each code is used', () => {
     const { found } = uses()
-    assert.deepEqual(codes.filter(code => !found.has(code)), [])
+    assert.deepEqual(
+      codes.filter(code => !found.has(code)),
+      []
+    )
   })
 
   it('each text is a sentence with a remedy, and its placeholders are filled', () => {

@@ -90,7 +90,9 @@ describe('levels', () => {
   })
 
   it('the table of docs/architecture.md names the same levels', () => {
-    const rows = [...read('docs/architecture.md').matchAll(/^\| `(?:lib\/)?([\w/.]+)` \|/gm)].map(([, name]) => name.replace(/\.js$/, ''))
+    const rows = [...read('docs/architecture.md').matchAll(/^\| `(?:lib\/)?([\w/.]+)` \|/gm)].map(([, name]) =>
+      name.replace(/\.js$/, '')
+    )
     assert.deepEqual(rows.sort(), Object.keys(LEVELS).sort())
   })
 })
@@ -118,9 +120,12 @@ describe('the check of the levels itself', () => {
   }
 
   it('finds requires and globals wherever they stand', () => {
-    const text = "const a = require('a')\nfunction f() { return import('b') }\nrequire(a + 'c')\nconst now = () => Date.now()"
+    const text =
+      "const a = require('a')\nfunction f() { return import('b') }\nrequire(a + 'c')\nconst now = () => Date.now()"
     assert.deepEqual(imports('x.js', text), ['a', 'b', null])
     assert.deepEqual(globalsUsed('x.js', ['Date', 'Math.random'], text), ['Date'])
-    assert.deepEqual(globalsUsed('x.js', ['Math.random', 'Date'], 'const o = { Date: 1 }; o.Date; Math.random()'), ['Math.random'])
+    assert.deepEqual(globalsUsed('x.js', ['Math.random', 'Date'], 'const o = { Date: 1 }; o.Date; Math.random()'), [
+      'Math.random'
+    ])
   })
 })

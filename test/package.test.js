@@ -40,7 +40,9 @@ describe('package.json', () => {
     assert.match(manifest.version, /^\d+\.\d+\.\d+$/)
     assert.equal(manifest.license, 'MIT')
     assert.match(read('LICENSE'), /^MIT License/)
-    assert.ok(manifest.repository.url && manifest.bugs.url && manifest.homepage && manifest.description && manifest.author)
+    assert.ok(
+      manifest.repository.url && manifest.bugs.url && manifest.homepage && manifest.description && manifest.author
+    )
   })
 
   it('is found by the words that people search for', () => {
@@ -66,12 +68,16 @@ describe('package.json', () => {
       assert.ok(exists(manifest.scripts[name].split('node ')[2].split(' ')[0]), name)
       assert.equal(manifest.scripts[`pre${name}`], undefined)
     }
-    for (const hook of ['preinstall', 'install', 'postinstall', 'prepare']) assert.equal(manifest.scripts[hook], undefined, hook)
+    for (const hook of ['preinstall', 'install', 'postinstall', 'prepare'])
+      assert.equal(manifest.scripts[hook], undefined, hook)
   })
 
   it('its set-up needs nothing but Node.js', () => {
     const { imports } = require('./support/source.js')
-    assert.deepEqual(imports('scripts/setup.js').filter(name => !name?.startsWith('node:')), [])
+    assert.deepEqual(
+      imports('scripts/setup.js').filter(name => !name?.startsWith('node:')),
+      []
+    )
   })
 
   it('the doors that it names exist', () => {
@@ -82,10 +88,21 @@ describe('package.json', () => {
 
 describe('what npm packs', () => {
   it('is the product and nothing else', () => {
-    const allowed = /^(lib|nodes|resources|types|docs|icons)\/|^examples\/[^/]+\.json$|^(package\.json|README\.md|LICENSE|CHANGELOG\.md|SECURITY\.md)$/
+    const allowed =
+      /^(lib|nodes|resources|types|docs|icons)\/|^examples\/[^/]+\.json$|^(package\.json|README\.md|LICENSE|CHANGELOG\.md|SECURITY\.md)$/
     const files = packed()
-    assert.deepEqual(files.filter(name => !allowed.test(name)), [])
-    for (const name of ['README.md', 'LICENSE', 'lib/index.js', 'lib/sim/index.js', ...Object.values(manifest['node-red'].nodes), ...examples()]) {
+    assert.deepEqual(
+      files.filter(name => !allowed.test(name)),
+      []
+    )
+    for (const name of [
+      'README.md',
+      'LICENSE',
+      'lib/index.js',
+      'lib/sim/index.js',
+      ...Object.values(manifest['node-red'].nodes),
+      ...examples()
+    ]) {
       assert.ok(files.includes(name), name)
     }
   })
@@ -119,7 +136,10 @@ describe('nodes', () => {
   it('register the type of that name, in the palette category of the package', () => {
     for (const [name] of nodes()) {
       const types = typesOf(`nodes/${name}.html`)
-      assert.deepEqual(types.map(it => it.type), [name])
+      assert.deepEqual(
+        types.map(it => it.type),
+        [name]
+      )
       if (!types[0].config) assert.match(read(`nodes/${name}.html`), /category:\s*'serial PLC'/)
       assert.match(read(`nodes/${name}.js`), new RegExp(`registerType\\('${name}'`))
     }
@@ -151,7 +171,9 @@ describe('example flows', () => {
   for (const name of examples()) {
     it(`${path.basename(name)} is a flat array on a tab of its own, with a comment`, () => {
       const nodes = flow(name)
-      assert.ok(Array.isArray(nodes) && nodes.every(node => typeof node.id === 'string' && typeof node.type === 'string'))
+      assert.ok(
+        Array.isArray(nodes) && nodes.every(node => typeof node.id === 'string' && typeof node.type === 'string')
+      )
       const ids = nodes.map(node => node.id)
       assert.equal(new Set(ids).size, ids.length, 'ids are unique')
       for (const id of ids) assert.match(id, /^[0-9a-f]{16}$/)
@@ -182,17 +204,31 @@ describe('the repository', () => {
   const text = () =>
     ['lib', 'nodes', 'scripts', 'examples', 'docs', 'bench', 'test', '.ci']
       .flatMap(folder => filesBelow(folder, name => /\.(js|json|html|md|css|sh)$/.test(name) || !path.extname(name)))
-      .concat(['package.json', 'package-lock.json', 'README.md', 'CHANGELOG.md', 'CONTRIBUTING.md', 'SECURITY.md', '.npmrc'])
+      .concat([
+        'package.json',
+        'package-lock.json',
+        'README.md',
+        'CHANGELOG.md',
+        'CONTRIBUTING.md',
+        'SECURITY.md',
+        '.npmrc'
+      ])
       .filter(name => name !== 'test/package.test.js' && exists(name))
 
   it('names no folder of the machine that it was written on', () => {
     const folders = /(?<![\w.@-])\/(work|root|tmp|home)\/\w/
-    assert.deepEqual(text().filter(name => folders.test(read(name))), [])
+    assert.deepEqual(
+      text().filter(name => folders.test(read(name))),
+      []
+    )
   })
 
   it('names no host of a package registry; the lockfiles come from any', () => {
     const hosts = /registry\.(npmjs|yarnpkg|npmmirror)|deb\.debian\.org|pypi\.org|proxy\.golang/
-    assert.deepEqual(text().filter(name => hosts.test(read(name))), [])
+    assert.deepEqual(
+      text().filter(name => hosts.test(read(name))),
+      []
+    )
     for (const name of ['package-lock.json', 'test/system/package-lock.json']) {
       assert.doesNotMatch(read(name), /"resolved": "http/, name)
       assert.match(read(name), /"integrity": "sha512-/, name)

@@ -37,7 +37,10 @@ function makeUserDir(flow) {
   const scope = path.join(userDir, 'node_modules', '@nxline')
   fs.mkdirSync(scope, { recursive: true })
   fs.symlinkSync(root, path.join(scope, 'node-red-serial-plc'), 'junction')
-  fs.writeFileSync(path.join(userDir, 'package.json'), JSON.stringify({ name: 'demo', private: true, version: '0.0.0' }))
+  fs.writeFileSync(
+    path.join(userDir, 'package.json'),
+    JSON.stringify({ name: 'demo', private: true, version: '0.0.0' })
+  )
   fs.writeFileSync(path.join(userDir, 'flows.json'), JSON.stringify(flow, null, 2))
   return userDir
 }

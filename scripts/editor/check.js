@@ -1,7 +1,9 @@
 'use strict'
 const { PROPERTIES, readProperty, allowed, applies } = require('../../nodes/properties')
 const { t, errorText } = require('./texts')
-const { notationOf, notationWithTags, parseItem, readTags } = require('./model')
+const { readSettings } = require('../../lib/device/settings')
+const { readTags } = require('../../lib/tag/tags')
+const { notationOf, notationWithTags, parseItem } = require('./model')
 
 /** Validators of the dialogs: they answer true, or the reason as a text. */
 
@@ -42,14 +44,10 @@ const MORE = {
       const twin = sameStation(node, value)
       return twin ? t('problem.sameStation', { other: twin.name || twin.id }) : true
     },
-    masterIds: (_node, value) => (/^\s*$|^[\s0-9A-Fa-fxX$,.\-–]+$/.test(value) ? true : t('problem.masterIds')),
-    writableRanges(node, value) {
-      const notation = notationWithTags(view(node))
-      String(value || '')
-        .split(/[,;\n]/)
-        .filter(part => part.trim())
-        .forEach(part => notation.parse(part.trim()))
-      return true
+    masterIds: (_node, value) => Boolean(readSettings({ station: 255, masterIds: value }, 1)),
+    writableRanges(node, writableRanges) {
+      const { areas } = view(node)
+      return Boolean(readSettings({ station: 255, areas: areas || [], writableRanges }, 1))
     },
     areas: (_node, value) => Boolean(notationOf(value)),
     tags(node, value) {

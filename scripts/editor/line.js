@@ -24,7 +24,8 @@ const loadPorts = () =>
 const showMenu = (button, ports) => {
   const field = $(`#${PREFIX}path`)
   const options = ports.map(port => ({
-    label: port.name === port.path ? port.path : `${port.name} — ${port.path}`,
+    label: port.label,
+    sublabel: port.path,
     onselect: () => field.val(port.path).trigger('change')
   }))
   if (options.length === 0) options.push({ label: t('editor.noPorts'), disabled: true, onselect: () => {} })
@@ -53,7 +54,7 @@ const editLine = node => {
       ports = found
       return found
     })
-  suggest($(`#${PREFIX}path`), () => ports.map(port => ({ value: port.path, hint: port.name })))
+  suggest($(`#${PREFIX}path`), () => ports.map(port => ({ value: port.path, hint: port.label })))
   suggest($(`#${PREFIX}baudRate`), () => SPEEDS.map(value => ({ value })))
   const button = $('#nxline-line-ports').attr('title', t('editor.listPorts'))
   button.on('click', () => refresh().then(found => showMenu(button, found)))

@@ -1,31 +1,10 @@
 'use strict'
-const { areaMap } = require('../../lib/codec/nx/areas')
-const { parseAddress, formatAddress } = require('../../lib/codec/nx/address')
-const { functionOf } = require('../../lib/codec/nx/functions')
+const { functionOf, queryCode } = require('../../lib/codec/nx/functions')
 const { parseItem } = require('../../lib/tag/item')
-const { readTags } = require('../../lib/tag/tags')
+const { nxNotation } = require('../../lib/tag/nx-notation')
 const { t } = require('./texts')
 
 /** What the library knows about addresses, for the dialogs: the very code that runs later. */
-
-const lastOf = (areas, address) => {
-  const row = address.raw ? undefined : areas.get(address.area)
-  if (!row) return 0xffff
-  return address.kind === 'bit' ? (row.base + row.words) * 16 - 1 : row.base + row.words - 1
-}
-
-/** How addresses are written for a station with these area rows. */
-const notationOf = areaRows => {
-  const areas = areaMap(areaRows || [])
-  return {
-    areas,
-    parse: text => parseAddress(text, areas),
-    format: place => formatAddress(place, areas),
-    last: address => lastOf(areas, address),
-    throughWord: address => Boolean(address.throughWord),
-    tags: new Map()
-  }
-}
 
 const attempt = (make, otherwise) => {
   try {
@@ -35,14 +14,26 @@ const attempt = (make, otherwise) => {
   }
 }
 
+/** How addresses are written for a station with these area rows; without tags. Throws BAD_AREA. */
+const notationOf = areas => nxNotation({ areas: areas || [] })
+
 /** The notation with the tags of a PLC's configuration; a faulty table counts as empty, its own dialog says so. */
 const notationWithTags = plc => {
-  const notation = attempt(() => notationOf(plc && plc.areas), notationOf([]))
-  notation.tags = attempt(() => readTags(plc && plc.tags, notation), new Map())
-  return notation
+  const { areas, tags } = plc || {}
+  return attempt(
+    () => nxNotation({ areas: areas || [], tags: tags || [] }),
+    attempt(() => notationOf(areas), notationOf([]))
+  )
 }
 
 const hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, '0')
+
+const unitOf = (item, bits) => {
+  const number = item.kind === 'word' ? item.count * item.type.words : item.count
+  if (item.throughWord) return t('editor.through')
+  if (number === 1) return t(bits ? 'editor.bit' : 'editor.word')
+  return t(bits ? 'editor.bits' : 'editor.words', { number })
+}
 
 /**
  * What goes out for an item: "function 23, word address 01BFh".
@@ -52,17 +43,12 @@ const hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits,
 const describe = (item, { steps = 2, write = false } = {}) => {
   const bits = item.kind === 'bit' && !item.throughWord
   const row = functionOf((write ? 'write' : 'read') + (bits ? 'Bits' : 'Words'))
-  const code = hex(String(steps) === '4' ? row.four : row.two, 2)
+  const code = hex(queryCode(row, String(steps) === '4' ? 4 : 2), 2)
   const address = hex(item.throughWord ? Math.floor(item.address / 16) : item.address, 4)
-  const words = item.kind === 'word' ? item.count * item.type.words : item.count
-  const key = `editor.${words > 1 ? (bits ? 'bits' : 'words') : bits ? 'bit' : item.throughWord ? 'through' : 'word'}`
-  return t('editor.goesOut', { code, address, what: t(key, { count: words, number: words }) })
+  return t('editor.goesOut', { code, address, what: unitOf(item, bits) })
 }
 
 /** The row of the area table that an item lies in is only a guess. */
-const unsure = (item, notation) => {
-  const address = attempt(() => notation.parse(notation.format(item)), null)
-  return Boolean(address) && address.certainty === 'unconfirmed'
-}
+const unsure = (item, notation) => attempt(() => notation.parse(item.addressText).certainty === 'unconfirmed', false)
 
-module.exports = { notationOf, notationWithTags, describe, unsure, parseItem, readTags, attempt, hex }
+module.exports = { notationOf, notationWithTags, describe, unsure, parseItem, attempt, hex }

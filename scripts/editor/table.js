@@ -2,7 +2,8 @@
 const { areaMap } = require('../../lib/codec/nx/areas')
 const { tagsFromCsv, tagsToCsv } = require('../../lib/tag/csv')
 const { parseExpression } = require('../../lib/tag/item')
-const { describe, hex, notationOf, readTags, unsure } = require('./model')
+const { readTags } = require('../../lib/tag/tags')
+const { describe, hex, notationOf, unsure } = require('./model')
 const { cell, flex, note, pick, say, tick } = require('./widgets')
 const { errorText, reasonOf, t } = require('./texts')
 

@@ -24,7 +24,8 @@ function filesBelow(folder, keep = _name => true) {
 
 const read = name => fs.readFileSync(path.join(root, name), 'utf8')
 
-const parse = (name, text = read(name)) => ts.createSourceFile(name, text, ts.ScriptTarget.ES2022, true, ts.ScriptKind.JS)
+const parse = (name, text = read(name)) =>
+  ts.createSourceFile(name, text, ts.ScriptTarget.ES2022, true, ts.ScriptKind.JS)
 
 function visit(node, look) {
   look(node)
@@ -35,7 +36,8 @@ function visit(node, look) {
 function importedBy(node) {
   if (!ts.isCallExpression(node)) return undefined
   const called = node.expression.getText()
-  if (called !== 'require' && called !== 'require.resolve' && node.expression.kind !== ts.SyntaxKind.ImportKeyword) return undefined
+  if (called !== 'require' && called !== 'require.resolve' && node.expression.kind !== ts.SyntaxKind.ImportKeyword)
+    return undefined
   const [name] = node.arguments
   return name && ts.isStringLiteralLike(name) ? name.text : null
 }

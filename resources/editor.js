@@ -46,8 +46,8 @@ var nxlineSerialPlc = (() => {
           line: node(),
           station: number("", 0, 255, { except: [192, 254], needed: true }),
           steps: choice("2", "2", "4"),
-          timeout: number(3e3, 10, 6e4),
-          attempts: number(3, 1, 10),
+          timeout: number(3e3, 10, 6e5),
+          attempts: number(3, 1, 20),
           masterIds: text("E2..E9"),
           soleMaster: flag(),
           access: choice("read", "read", "write"),
@@ -339,6 +339,334 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/codec/nx/ids.js
+  var require_ids = __commonJS({
+    "lib/codec/nx/ids.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var LEAST_FREE = 192;
+      var LAST = 254;
+      var DEFAULT_IDS = Object.freeze([226, 227, 228, 229, 230, 231, 232, 233]);
+      function masterIdList(value, { stations = [] } = {}) {
+        if (value === void 0 || value === null || value === "") return DEFAULT_IDS;
+        const given = Array.isArray(value) ? value : typeof value === "string" ? value.split(",").flatMap(expand) : [value];
+        if (given.length < 1 || given.length > LAST + 1) throw bad(value, "give 1 to 63 numbers");
+        const ids = [...new Set(given)];
+        for (const id of ids) checkId(id, stations);
+        return Object.freeze(ids);
+      }
+      function checkId(id, stations) {
+        if (!Number.isInteger(id) || id < 0 || id > LAST) throw bad(id, "it must be a whole number from 0 to 254");
+        if (id >= LEAST_FREE) return;
+        if (stations.includes(id)) throw bad(id, "a station of this line has this number");
+        if (stations.includes(255)) throw bad(id, "with station 255 the number of the PLC is not known");
+      }
+      function expand(text) {
+        const ends = text.split("..").map((part) => {
+          const clean = part.trim().replace(/^\$/, "0x");
+          if (!/^(0x[0-9a-f]{1,2}|\d{1,3})$/i.test(clean)) throw bad(text.trim(), "it is not a number");
+          return Number(clean);
+        });
+        const [first, last = first] = ends;
+        if (ends.length > 2 || last < first || last > 255) throw bad(text.trim(), "it is not a range");
+        return Array.from({ length: last - first + 1 }, (_, i) => first + i);
+      }
+      var bad = (id, reason) => new PlcError("BAD_MASTER_ID", { id: String(id), reason });
+      function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
+        if (!Array.isArray(memory.resting)) memory.resting = [];
+        const resting = memory.resting;
+        const remembered = ids.indexOf(memory.last ?? -1);
+        let next = remembered >= 0 ? (remembered + 1) % ids.length : Math.abs(Math.trunc(start)) % ids.length || 0;
+        const free = (id) => {
+          const at = id === void 0 ? -1 : resting.indexOf(id);
+          if (id === void 0) resting.length = 0;
+          else if (at >= 0) resting.splice(at, 1);
+        };
+        return {
+          /** @returns {number} the ID of the next query */
+          take() {
+            let tries = ids.length;
+            while (tries-- > 0 && resting.includes(ids[next])) next = (next + 1) % ids.length;
+            const oldest = resting.find((id2) => ids.includes(id2));
+            const id = tries < 0 && oldest !== void 0 ? oldest : ids[next];
+            next = (ids.indexOf(id) + 1) % ids.length;
+            memory.last = id;
+            return id;
+          },
+          /** The exchange of this ID ended with an answer. @param {number} id */
+          ok: (id) => free(id),
+          /** It did not: an answer may still come. @param {number} id */
+          failed(id) {
+            free(id);
+            if (ids.length > 1) resting.push(id);
+          },
+          /** No answer can come any more: to this ID, or to any. @param {number} [id] */
+          free,
+          /** @returns {number[]} IDs to which an answer may still come */
+          resting: () => [...resting],
+          ids
+        };
+      }
+      module.exports = { DEFAULT_IDS, masterIdList, masterIds };
+    }
+  });
+
+  // lib/codec/nx/functions.js
+  var require_functions = __commonJS({
+    "lib/codec/nx/functions.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var FUNCTIONS = table([
+        // name            2-step 4-step most unit        repeatable sendable
+        ["readBits", 33, 1, 255, "bits", true, true],
+        ["writeBits", 34, 2, 254, "bits", false, true],
+        ["readWords", 35, 3, 128, "words", true, true],
+        ["writeWords", 36, 4, 127, "words", false, true],
+        ["readMixed", 37, 5, 128, "addresses", true, true],
+        ["writeMixed", 38, 6, 85, "addresses", false, true],
+        ["readProgram", 39, 7, 0, "", false, false],
+        ["writeProgram", 40, 8, 0, "", false, false],
+        ["readInstruction", 41, 9, 0, "", false, false],
+        ["changeInstruction", 42, 10, 0, "", false, false],
+        ["changeOperand", 43, 11, 0, "", false, false],
+        ["insertInstruction", 44, 12, 0, "", false, false],
+        ["deleteInstruction", 45, 13, 0, "", false, false],
+        ["searchInstruction", 46, 14, 0, "", false, false],
+        ["searchOperand", 47, 15, 0, "", false, false],
+        ["deleteProgram", 32, 16, 0, "", false, false],
+        ["noService", 0, 0, 0, "", false, false]
+      ]);
+      function table(rows) {
+        return Object.freeze(
+          rows.map(
+            ([name, two, four, most, unit, repeatable, sendable]) => Object.freeze({ name, two, four, most, unit, repeatable, sendable })
+          )
+        );
+      }
+      var ANSWER = 128;
+      var ACKNOWLEDGE = 128;
+      var RESPONSE_REQUEST = 0;
+      var NO_SERVICE = 0;
+      var ERRORS = Object.freeze({
+        1: "PLC_WRONG_FUNCTION",
+        2: "PLC_OUT_OF_RANGE",
+        3: "PLC_WRONG_FRAME",
+        4: "PLC_NOT_PERFORMED",
+        5: "PLC_FRAME_TOO_LONG"
+      });
+      var byName = new Map(FUNCTIONS.map((row) => [row.name, row]));
+      var byCode = /* @__PURE__ */ new Map();
+      for (const row of FUNCTIONS) {
+        if (row.name === "noService") continue;
+        byCode.set(row.two, { row, steps: 2 });
+        byCode.set(row.four, { row, steps: 4 });
+      }
+      function functionOf(name) {
+        const row = typeof name === "string" ? byName.get(name) : void 0;
+        if (!row || !row.sendable) throw new PlcError("FUNCTION_REFUSED", { function: String(name) });
+        return row;
+      }
+      var queryCode = (row, steps) => steps === 4 ? row.four : row.two;
+      var answerCode = (row, steps) => queryCode(row, steps) + ANSWER;
+      var functionByCode = (code) => byCode.get(code);
+      module.exports = {
+        FUNCTIONS,
+        ERRORS,
+        ANSWER,
+        ACKNOWLEDGE,
+        RESPONSE_REQUEST,
+        NO_SERVICE,
+        functionOf,
+        functionByCode,
+        queryCode,
+        answerCode
+      };
+    }
+  });
+
+  // lib/codec/crc16.js
+  var require_crc16 = __commonJS({
+    "lib/codec/crc16.js"(exports, module) {
+      "use strict";
+      var POLYNOMIAL = 40961;
+      var START = 65535;
+      var TABLE = Uint16Array.from({ length: 256 }, (_, byte) => {
+        let crc = byte;
+        for (let bit = 0; bit < 8; bit++) crc = crc & 1 ? crc >>> 1 ^ POLYNOMIAL : crc >>> 1;
+        return crc;
+      });
+      function crc16(bytes, start = 0, end = bytes.length) {
+        let crc = START;
+        for (let i = start; i < end; i++) crc = crc >>> 8 ^ TABLE[(crc ^ bytes[i]) & 255];
+        return crc;
+      }
+      module.exports = { crc16 };
+    }
+  });
+
+  // lib/codec/nx/frame.js
+  var require_frame = __commonJS({
+    "lib/codec/nx/frame.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { crc16 } = require_crc16();
+      var HEADER = 4;
+      var OVERHEAD = 6;
+      var MOST_INFO = 256;
+      var SHORTEST = OVERHEAD + 1;
+      var LONGEST = OVERHEAD + MOST_INFO;
+      function encodeFrame({ to, from, fn, info }) {
+        byte("to", to);
+        byte("from", from);
+        byte("fn", fn);
+        const length = info.length;
+        if (!(length >= 1))
+          throw new PlcError("BAD_SETTING", { setting: "info", value: "empty", reason: "LEN 0 means 256 bytes" });
+        if (length > MOST_INFO) throw new PlcError("FRAME_TOO_LONG", { what: "INFO", got: length, most: MOST_INFO });
+        const bytes = Buffer.allocUnsafe(length + OVERHEAD);
+        bytes[0] = to;
+        bytes[1] = from;
+        bytes[2] = fn;
+        bytes[3] = length & 255;
+        bytes.set(info, HEADER);
+        bytes.writeUInt16LE(crc16(bytes, 0, length + HEADER), length + HEADER);
+        return bytes;
+      }
+      function byte(setting, value) {
+        if (!Number.isInteger(value) || value < 0 || value > 255) {
+          throw new PlcError("BAD_SETTING", { setting, value, reason: "it must be a byte, 0 to 255" });
+        }
+      }
+      function frameLength(bytes, start = 0) {
+        return bytes.length - start < HEADER ? 0 : (bytes[start + 3] || MOST_INFO) + OVERHEAD;
+      }
+      function crcFits(bytes, start, length) {
+        const end = start + length - 2;
+        return crc16(bytes, start, end) === (bytes[end] | bytes[end + 1] << 8);
+      }
+      function decodeFrame(bytes, start = 0) {
+        const length = frameLength(bytes, start);
+        if (length === 0 || bytes.length - start < length || !crcFits(bytes, start, length)) return null;
+        const info = Buffer.from(bytes.buffer, bytes.byteOffset + start + HEADER, length - OVERHEAD);
+        return { to: bytes[start], from: bytes[start + 1], fn: bytes[start + 2], info, length };
+      }
+      module.exports = { SHORTEST, LONGEST, MOST_INFO, HEADER, OVERHEAD, encodeFrame, frameLength, crcFits, decodeFrame };
+    }
+  });
+
+  // lib/codec/nx/limits.js
+  var require_limits = __commonJS({
+    "lib/codec/nx/limits.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { functionOf } = require_functions();
+      var { MOST_INFO } = require_frame();
+      var LIMITS = Object.freeze({
+        readBits: 255,
+        writeBits: 254,
+        readWords: 128,
+        writeWords: 64,
+        readMixed: 128,
+        writeMixed: 85,
+        info: MOST_INFO
+      });
+      var LAST_MIXED = 16383;
+      var LAST = 65535;
+      function limitsOf(settings = {}) {
+        const limits = { ...LIMITS };
+        for (const [name, given] of Object.entries(settings)) {
+          if (given === void 0) continue;
+          if (!Object.hasOwn(LIMITS, name)) {
+            throw new PlcError("BAD_SETTING", { setting: `limits.${name}`, value: given, reason: "there is no such limit" });
+          }
+          const least = name === "info" ? 3 : 1;
+          const most = name === "info" ? MOST_INFO : functionOf(name).most;
+          const value = typeof given === "string" && /^\s*\d{1,3}\s*$/.test(given) ? Number(given) : given;
+          if (!Number.isInteger(value) || value < least || value > most) {
+            throw new PlcError("BAD_SETTING", {
+              setting: `limits.${name}`,
+              value: given,
+              reason: `it must be ${least} to ${most}`
+            });
+          }
+          limits[name] = value;
+        }
+        return Object.freeze(limits);
+      }
+      function check(query, limits = LIMITS) {
+        const row = functionOf(query?.ask);
+        CHECKS[row.name](query, row, limits);
+        return row;
+      }
+      var CHECKS = {
+        readBits: checkBlock,
+        readWords: checkBlock,
+        writeBits: (query, row, limits) => checkBlockWrite("bit", query, { row, limits }),
+        writeWords: (query, row, limits) => checkBlockWrite("word", query, { row, limits }),
+        readMixed({ addresses }, row, limits) {
+          const list = listOf(addresses, row, limits);
+          list.forEach(checkPlace);
+          const bytes = list.reduce((sum, { kind }) => sum + (kind === "bit" ? 1 : 2), 0);
+          checkBytes(Math.max(bytes, list.length * 2), limits);
+        },
+        writeMixed({ writes }, row, limits) {
+          const list = listOf(writes, row, limits);
+          list.forEach(checkPlace);
+          list.forEach(({ kind, address, value }) => checkValue(kind, address, value));
+          const bytes = list.reduce((sum, { kind }) => sum + (kind === "bit" ? 3 : 4), 0);
+          checkBytes(bytes, limits);
+        }
+      };
+      function checkBlockWrite(kind, { base, values }, { row, limits }) {
+        const list = listOf(values, row, limits);
+        checkBlock({ base, count: list.length }, row, limits);
+        list.forEach((value, i) => checkValue(kind, base + i, value));
+      }
+      function checkBlock({ base, count }, row, limits) {
+        checkCount(count, row, limits);
+        const kind = row.unit === "bits" ? "bit" : "word";
+        if (!whole(base, LAST)) throw badAddress(base, `the last ${kind} address is ${LAST}`);
+        if (base + count - 1 > LAST)
+          throw badAddress(base, `${count} ${row.unit} from there end after the last address ${LAST}`);
+        const size = kind === "bit" ? count : count * 2;
+        checkBytes(row.repeatable ? Math.max(size, 3) : size + 2, limits);
+      }
+      function checkCount(count, row, limits) {
+        const most = limits[row.name];
+        if (whole(count, most) && count >= 1) return;
+        const reason = count === 0 ? "there is nothing to ask for" : whole(count, Infinity) ? "too many for one frame" : "no count";
+        throw new PlcError("BAD_COUNT", { count, unit: row.unit, reason, least: 1, most });
+      }
+      function checkBytes(got, limits) {
+        if (got > limits.info)
+          throw new PlcError("FRAME_TOO_LONG", { what: "the query or its answer", got, most: limits.info });
+      }
+      function checkPlace(place) {
+        const kind = place?.kind;
+        if (kind !== "bit" && kind !== "word") throw badAddress(place?.address, "it must be a bit or a word");
+        if (!whole(place.address, LAST_MIXED))
+          throw badAddress(place.address, `in mixed frames the last ${kind} address is ${LAST_MIXED}`);
+      }
+      function checkValue(kind, address, value) {
+        if (kind === "bit" ? typeof value === "boolean" : whole(value, 65535)) return;
+        const reason = kind === "bit" ? "a bit is true or false" : "a word is a whole number from 0 to 65535";
+        throw new PlcError("BAD_VALUE", { item: `${kind} ${hex(address)}`, value: String(value), reason });
+      }
+      function listOf(list, row, limits) {
+        if (Array.isArray(list)) {
+          checkCount(list.length, row, limits);
+          return Array.from(list);
+        }
+        const reason = "they are not given as a list";
+        throw new PlcError("BAD_COUNT", { count: "no", unit: row.unit, reason, least: 1, most: limits[row.name] });
+      }
+      var whole = (value, most) => Number.isInteger(value) && value >= 0 && value <= most;
+      var hex = (value) => `${value.toString(16).toUpperCase().padStart(4, "0")}h`;
+      var badAddress = (address, reason) => new PlcError("BAD_ADDRESS", { address: String(address), reason });
+      module.exports = { LIMITS, limitsOf, check };
+    }
+  });
+
   // lib/codec/nx/areas.js
   var require_areas = __commonJS({
     "lib/codec/nx/areas.js"(exports, module) {
@@ -450,79 +778,6 @@ var nxlineSerialPlc = (() => {
       }
       var bad = (name, reason) => new PlcError("BAD_AREA", { name, reason });
       module.exports = { AREAS, LAST_BIT, LAST_WORD, areaMap };
-    }
-  });
-
-  // lib/codec/nx/functions.js
-  var require_functions = __commonJS({
-    "lib/codec/nx/functions.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var FUNCTIONS = table([
-        // name            2-step 4-step most unit        repeatable sendable
-        ["readBits", 33, 1, 255, "bits", true, true],
-        ["writeBits", 34, 2, 254, "bits", false, true],
-        ["readWords", 35, 3, 128, "words", true, true],
-        ["writeWords", 36, 4, 127, "words", false, true],
-        ["readMixed", 37, 5, 128, "addresses", true, true],
-        ["writeMixed", 38, 6, 85, "addresses", false, true],
-        ["readProgram", 39, 7, 0, "", false, false],
-        ["writeProgram", 40, 8, 0, "", false, false],
-        ["readInstruction", 41, 9, 0, "", false, false],
-        ["changeInstruction", 42, 10, 0, "", false, false],
-        ["changeOperand", 43, 11, 0, "", false, false],
-        ["insertInstruction", 44, 12, 0, "", false, false],
-        ["deleteInstruction", 45, 13, 0, "", false, false],
-        ["searchInstruction", 46, 14, 0, "", false, false],
-        ["searchOperand", 47, 15, 0, "", false, false],
-        ["deleteProgram", 32, 16, 0, "", false, false],
-        ["noService", 0, 0, 0, "", false, false]
-      ]);
-      function table(rows) {
-        return Object.freeze(
-          rows.map(
-            ([name, two, four, most, unit, repeatable, sendable]) => Object.freeze({ name, two, four, most, unit, repeatable, sendable })
-          )
-        );
-      }
-      var ANSWER = 128;
-      var ACKNOWLEDGE = 128;
-      var RESPONSE_REQUEST = 0;
-      var NO_SERVICE = 0;
-      var ERRORS = Object.freeze({
-        1: "PLC_WRONG_FUNCTION",
-        2: "PLC_OUT_OF_RANGE",
-        3: "PLC_WRONG_FRAME",
-        4: "PLC_NOT_PERFORMED",
-        5: "PLC_FRAME_TOO_LONG"
-      });
-      var byName = new Map(FUNCTIONS.map((row) => [row.name, row]));
-      var byCode = /* @__PURE__ */ new Map();
-      for (const row of FUNCTIONS) {
-        if (row.name === "noService") continue;
-        byCode.set(row.two, { row, steps: 2 });
-        byCode.set(row.four, { row, steps: 4 });
-      }
-      function functionOf(name) {
-        const row = typeof name === "string" ? byName.get(name) : void 0;
-        if (!row || !row.sendable) throw new PlcError("FUNCTION_REFUSED", { function: String(name) });
-        return row;
-      }
-      var queryCode = (row, steps) => steps === 4 ? row.four : row.two;
-      var answerCode = (row, steps) => queryCode(row, steps) + ANSWER;
-      var functionByCode = (code) => byCode.get(code);
-      module.exports = {
-        FUNCTIONS,
-        ERRORS,
-        ANSWER,
-        ACKNOWLEDGE,
-        RESPONSE_REQUEST,
-        NO_SERVICE,
-        functionOf,
-        functionByCode,
-        queryCode,
-        answerCode
-      };
     }
   });
 
@@ -834,7 +1089,9 @@ var nxlineSerialPlc = (() => {
           encode
         });
       };
-      var TYPES = new Map([["bool", BOOL], ...NUMBERS.map((row) => [row[0], numberType(row)])]);
+      var TYPES = /* @__PURE__ */ new Map();
+      TYPES.set("bool", BOOL);
+      for (const row of NUMBERS) TYPES.set(row[0], numberType(row));
       var TYPE_NAMES = Object.freeze([...TYPES.keys(), "string[n]"]);
       var parseType = (text) => {
         const name = String(text).trim().toLowerCase();
@@ -872,7 +1129,7 @@ var nxlineSerialPlc = (() => {
         throw new PlcError("BAD_TYPE", { type: type.name, reason, known: address.kind === "bit" ? "bool" : "all but bool" });
       };
       var countOf = (text, { address, type, notation }) => {
-        const range = address.range ?? address.count > 1;
+        const range = address.count > 1;
         if (range && address.count % type.words !== 0) {
           throw new PlcError("BAD_TYPE", {
             type: type.name,
@@ -916,9 +1173,13 @@ var nxlineSerialPlc = (() => {
           addressText: address.text,
           ...countOf(text, { address, type, notation }),
           type,
-          throughWord: address.kind === "bit" && Boolean(notation.throughWord?.(address)),
+          throughWord: Boolean(address.throughWord),
+          areaWritable: address.writable,
           ...tagged(tag, notation),
-          elements: []
+          elements: (
+            /** @type {Item['elements']} */
+            []
+          )
         };
         item.elements = elementsOf(item, notation);
         return item;
@@ -1055,7 +1316,11 @@ var nxlineSerialPlc = (() => {
           const item = parseExpression(tag.address, notation, { tag });
           checkNumbers(tag, item.type);
           checkName(tag, item, notation);
-        } catch (error) {
+        } catch (caught) {
+          const error = (
+            /** @type {PlcError} */
+            caught
+          );
           throw error.code === "BAD_TAG" ? error : new PlcError("BAD_TAG", { name: tag.name, reason: error.message, cause: error });
         }
       };
@@ -1076,32 +1341,124 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/tag/nx-notation.js
+  var require_nx_notation = __commonJS({
+    "lib/tag/nx-notation.js"(exports, module) {
+      "use strict";
+      var { formatAddress, parseAddress } = require_address();
+      var { areaMap, LAST_WORD } = require_areas();
+      var { readTags } = require_tags();
+      var lastOf = (address, areas) => {
+        const row = address.area === null ? void 0 : areas.get(address.area);
+        const lastWord = row ? row.base + row.words - 1 : LAST_WORD;
+        return address.kind === "word" ? lastWord : lastWord * 16 + 15;
+      };
+      var nxNotation = ({ areas: rows = [], tags, wordOrder = "low", byteOrder = "low" } = {}) => {
+        const areas = areaMap(rows);
+        const notation = {
+          areas,
+          parse: (text) => parseAddress(text, areas),
+          format: (at) => formatAddress(at, areas),
+          last: (address) => lastOf(address, areas),
+          wordOrder,
+          byteOrder
+        };
+        return { ...notation, tags: readTags(tags, notation) };
+      };
+      module.exports = { nxNotation };
+    }
+  });
+
+  // lib/device/settings.js
+  var require_settings = __commonJS({
+    "lib/device/settings.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { masterIdList } = require_ids();
+      var { limitsOf } = require_limits();
+      var { nxNotation } = require_nx_notation();
+      var LAST_STATION = 191;
+      var ANY_STATION = 255;
+      var GAP = 10;
+      var blank = (value) => value === void 0 || value === null || typeof value === "string" && value.trim() === "";
+      var wholeNumber = (setting, value, { fallback, least, most }) => {
+        if (blank(value)) return fallback;
+        const number = typeof value === "string" ? Number(value) : value;
+        if (Number.isInteger(number) && number >= least && number <= most) return number;
+        throw new PlcError("BAD_SETTING", { setting, value, reason: `a whole number from ${least} to ${most} is needed` });
+      };
+      var choice = (setting, value, known) => {
+        if (blank(value)) return known[0];
+        const found = known.find((each) => String(each) === String(value).trim());
+        if (found !== void 0) return found;
+        throw new PlcError("BAD_SETTING", { setting, value, reason: `known are ${known.join(", ")}` });
+      };
+      var readStation = (value) => {
+        const number = typeof value === "string" && /^\s*\d{1,3}\s*$/.test(value) ? Number(value) : value;
+        if (typeof number !== "number" || !Number.isInteger(number) || number < 0 || number > 255) {
+          throw new PlcError("BAD_STATION", {
+            station: value,
+            reason: "it must be 0 to 191, or 255 for the only PLC of a line"
+          });
+        }
+        if (number > LAST_STATION && number !== ANY_STATION) {
+          throw new PlcError("BAD_STATION", { station: number, reason: "192 to 254 are numbers of masters" });
+        }
+        return number;
+      };
+      var markHex = (value) => typeof value === "string" ? value.replace(/(?<![$\w])(?=\d?[a-f])[\da-f]{2}(?!\w)/gi, "0x$&") : value;
+      var boundsOf = (areas) => areas.list.flatMap(({ base, words }) => [base, base + words]);
+      var frameCost = ({ steps, gap, character }) => {
+        const frames = steps === 4 ? 26 : 12;
+        const silence = (steps === 4 ? 2 * gap + 10 : gap + 5) / character;
+        return Math.round(frames + silence);
+      };
+      var readRanges = (value, notation) => {
+        const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(",");
+        return given.map((text) => String(text).trim()).filter((text) => text !== "").map((text) => {
+          const { kind, address, count } = notation.parse(text);
+          const size = kind === "word" ? 16 : 1;
+          return { start: address * size, end: (address + count) * size };
+        });
+      };
+      var readSettings = (given, character) => {
+        const station = readStation(given.station);
+        const steps = Number(choice("steps", given.steps, [2, 4]));
+        const gap = wholeNumber("gap", given.gap, { fallback: GAP, least: 0, most: 1e4 }) || GAP;
+        const wordOrder = choice("wordOrder", given.wordOrder, ["low", "high"]);
+        const byteOrder = choice("byteOrder", given.byteOrder, ["low", "high"]);
+        const notation = nxNotation({ areas: given.areas || [], tags: given.tags, wordOrder, byteOrder });
+        const stations = [...given.stations ?? [], station];
+        const limits = limitsOf(given.limits);
+        return {
+          station,
+          steps,
+          gap,
+          name: blank(given.name) ? `station ${station}` : String(given.name).trim(),
+          timeout: wholeNumber("timeout", given.timeout, { fallback: 3e3, least: 10, most: 6e5 }),
+          attempts: wholeNumber("attempts", given.attempts, { fallback: 3, least: 1, most: 20 }),
+          masterIds: masterIdList(markHex(given.masterIds), { stations }),
+          soleMaster: given.soleMaster === true || given.soleMaster === "true",
+          access: choice("access", given.access, ["read", "write"]),
+          ranges: readRanges(given.writableRanges, notation),
+          deadline: wholeNumber("deadline", given.deadline, { fallback: 0, least: 0, most: 36e5 }),
+          notation,
+          limits,
+          planLimits: { ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) }
+        };
+      };
+      module.exports = { readSettings, readStation };
+    }
+  });
+
   // scripts/editor/model.js
   var require_model = __commonJS({
     "scripts/editor/model.js"(exports, module) {
       "use strict";
-      var { areaMap } = require_areas();
-      var { parseAddress, formatAddress } = require_address();
-      var { functionOf } = require_functions();
+      var { functionOf, queryCode } = require_functions();
       var { parseItem } = require_item();
-      var { readTags } = require_tags();
+      var { nxNotation } = require_nx_notation();
       var { t } = require_texts();
-      var lastOf = (areas, address) => {
-        const row = address.raw ? void 0 : areas.get(address.area);
-        if (!row) return 65535;
-        return address.kind === "bit" ? (row.base + row.words) * 16 - 1 : row.base + row.words - 1;
-      };
-      var notationOf = (areaRows) => {
-        const areas = areaMap(areaRows || []);
-        return {
-          areas,
-          parse: (text) => parseAddress(text, areas),
-          format: (place) => formatAddress(place, areas),
-          last: (address) => lastOf(areas, address),
-          throughWord: (address) => Boolean(address.throughWord),
-          tags: /* @__PURE__ */ new Map()
-        };
-      };
       var attempt = (make, otherwise) => {
         try {
           return make();
@@ -1109,26 +1466,30 @@ var nxlineSerialPlc = (() => {
           return otherwise;
         }
       };
+      var notationOf = (areas) => nxNotation({ areas: areas || [] });
       var notationWithTags = (plc) => {
-        const notation = attempt(() => notationOf(plc && plc.areas), notationOf([]));
-        notation.tags = attempt(() => readTags(plc && plc.tags, notation), /* @__PURE__ */ new Map());
-        return notation;
+        const { areas, tags } = plc || {};
+        return attempt(
+          () => nxNotation({ areas: areas || [], tags: tags || [] }),
+          attempt(() => notationOf(areas), notationOf([]))
+        );
       };
       var hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, "0");
+      var unitOf = (item, bits) => {
+        const number = item.kind === "word" ? item.count * item.type.words : item.count;
+        if (item.throughWord) return t("editor.through");
+        if (number === 1) return t(bits ? "editor.bit" : "editor.word");
+        return t(bits ? "editor.bits" : "editor.words", { number });
+      };
       var describe = (item, { steps = 2, write = false } = {}) => {
         const bits = item.kind === "bit" && !item.throughWord;
         const row = functionOf((write ? "write" : "read") + (bits ? "Bits" : "Words"));
-        const code = hex(String(steps) === "4" ? row.four : row.two, 2);
+        const code = hex(queryCode(row, String(steps) === "4" ? 4 : 2), 2);
         const address = hex(item.throughWord ? Math.floor(item.address / 16) : item.address, 4);
-        const words = item.kind === "word" ? item.count * item.type.words : item.count;
-        const key = `editor.${words > 1 ? bits ? "bits" : "words" : bits ? "bit" : item.throughWord ? "through" : "word"}`;
-        return t("editor.goesOut", { code, address, what: t(key, { count: words, number: words }) });
+        return t("editor.goesOut", { code, address, what: unitOf(item, bits) });
       };
-      var unsure = (item, notation) => {
-        const address = attempt(() => notation.parse(notation.format(item)), null);
-        return Boolean(address) && address.certainty === "unconfirmed";
-      };
-      module.exports = { notationOf, notationWithTags, describe, unsure, parseItem, readTags, attempt, hex };
+      var unsure = (item, notation) => attempt(() => notation.parse(item.addressText).certainty === "unconfirmed", false);
+      module.exports = { notationOf, notationWithTags, describe, unsure, parseItem, attempt, hex };
     }
   });
 
@@ -1138,7 +1499,9 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { PROPERTIES, readProperty, allowed, applies } = require_properties();
       var { t, errorText } = require_texts();
-      var { notationOf, notationWithTags, parseItem, readTags } = require_model();
+      var { readSettings } = require_settings();
+      var { readTags } = require_tags();
+      var { notationOf, notationWithTags, parseItem } = require_model();
       var edited = { id: null, prefix: "node-input-" };
       var open = (node, prefix) => Object.assign(edited, { id: node.id, prefix });
       var done = () => {
@@ -1167,11 +1530,10 @@ var nxlineSerialPlc = (() => {
             const twin = sameStation(node, value);
             return twin ? t("problem.sameStation", { other: twin.name || twin.id }) : true;
           },
-          masterIds: (_node, value) => /^\s*$|^[\s0-9A-Fa-fxX$,.\-–]+$/.test(value) ? true : t("problem.masterIds"),
-          writableRanges(node, value) {
-            const notation = notationWithTags(view(node));
-            String(value || "").split(/[,;\n]/).filter((part) => part.trim()).forEach((part) => notation.parse(part.trim()));
-            return true;
+          masterIds: (_node, value) => Boolean(readSettings({ station: 255, masterIds: value }, 1)),
+          writableRanges(node, writableRanges) {
+            const { areas } = view(node);
+            return Boolean(readSettings({ station: 255, areas: areas || [], writableRanges }, 1));
           },
           areas: (_node, value) => Boolean(notationOf(value)),
           tags(node, value) {
@@ -1322,7 +1684,7 @@ var nxlineSerialPlc = (() => {
       var showMenu = (button, ports) => {
         const field = $(`#${PREFIX}path`);
         const options = ports.map((port) => ({
-          label: port.name === port.path ? port.path : `${port.name} — ${port.path}`,
+          label: port.label,
           onselect: () => field.val(port.path).trigger("change")
         }));
         if (options.length === 0) options.push({ label: t("editor.noPorts"), disabled: true, onselect: () => {
@@ -1348,7 +1710,7 @@ var nxlineSerialPlc = (() => {
           ports = found;
           return found;
         });
-        suggest($(`#${PREFIX}path`), () => ports.map((port) => ({ value: port.path, hint: port.name })));
+        suggest($(`#${PREFIX}path`), () => ports.map((port) => ({ value: port.path, hint: port.label })));
         suggest($(`#${PREFIX}baudRate`), () => SPEEDS.map((value) => ({ value })));
         const button = $("#nxline-line-ports").attr("title", t("editor.listPorts"));
         button.on("click", () => refresh().then((found) => showMenu(button, found)));
@@ -1433,7 +1795,8 @@ var nxlineSerialPlc = (() => {
       var { areaMap } = require_areas();
       var { tagsFromCsv, tagsToCsv } = require_csv();
       var { parseExpression } = require_item();
-      var { describe, hex, notationOf, readTags, unsure } = require_model();
+      var { readTags } = require_tags();
+      var { describe, hex, notationOf, unsure } = require_model();
       var { cell, flex, note, pick, say, tick } = require_widgets();
       var { errorText, reasonOf, t } = require_texts();
       var TYPES = ["", "bool", "uint16", "int16", "uint32", "int32", "float32", "bcd16", "bcd32", "string[8]"];
@@ -1769,7 +2132,6 @@ var nxlineSerialPlc = (() => {
           addButton: t("editor.addItem"),
           removable: true,
           sortable: true,
-          scrollOnAdd: true,
           height: 180
         });
         (node.items || []).forEach((text) => list.editableList("addItem", { text }));

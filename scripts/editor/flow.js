@@ -109,7 +109,6 @@ const editRead = node => {
     addButton: t('editor.addItem'),
     removable: true,
     sortable: true,
-    scrollOnAdd: true,
     height: 180
   })
   ;(node.items || []).forEach(text => list.editableList('addItem', { text }))

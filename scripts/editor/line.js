@@ -25,7 +25,6 @@ const showMenu = (button, ports) => {
   const field = $(`#${PREFIX}path`)
   const options = ports.map(port => ({
     label: port.label,
-    sublabel: port.path,
     onselect: () => field.val(port.path).trigger('change')
   }))
   if (options.length === 0) options.push({ label: t('editor.noPorts'), disabled: true, onselect: () => {} })

@@ -1,0 +1,80 @@
+'use strict'
+const { PlcError, createThrottle } = require('../lib')
+const { readSettings } = require('./settings')
+const { fitted, statusOf } = require('./status')
+
+const SHARED = '@nxline/node-red-serial-plc/plc-line:status.'
+const STATUS_INTERVAL = 1000
+
+/**
+ * Shows a node's state: on change only, at most once a second, the last one always.
+ * @param {any} RED @param {any} node
+ */
+const statusDisplay = (RED, node) => {
+  let state = {}
+  let shown = ''
+  let simulated = false
+  const throttle = createThrottle({ interval: STATUS_INTERVAL }, () => {
+    const { fill, shape, key, values } = statusOf(state)
+    const status = { fill, shape, text: fitted(RED._(SHARED + key, values), simulated) }
+    const signature = JSON.stringify(status)
+    if (signature === shown) return
+    shown = signature
+    node.status(status)
+  })
+  return {
+    /** @param {import('./status').State} change */
+    update(change) {
+      state = { ...state, ...change }
+      throttle(state)
+    },
+    simulated: value => {
+      simulated = value
+    },
+    stop: () => throttle.cancel()
+  }
+}
+
+const findPlc = (RED, settings, node) => {
+  const plc = RED.nodes.getNode(settings.plc)
+  if (!plc) throw new PlcError('NO_CONFIGURATION', { node: node.name || node.type, what: 'plc' })
+  return plc
+}
+
+/**
+ * What nx-read and nx-write have in common: their settings, the PLC with its line, the status, and a close that always ends.
+ * @param {any} RED @param {any} node
+ * @param {{ type: string, config: any, start: (session: any) => (() => void) | void }} own `start` runs if the configuration is
+ *   usable and may throw a PlcError; it returns what stops it
+ */
+const openSession = (RED, node, { type, config, start }) => {
+  const display = statusDisplay(RED, node)
+  const session = { node, display, settings: null, plc: null, device: null, fault: null, closed: false }
+  let stop
+  const attached = () => {
+    session.settings = readSettings(type, config)
+    session.plc = findPlc(RED, session.settings, node)
+    display.simulated(session.plc.simulated)
+    session.device = session.plc.attach(node, line => display.update({ line }))
+    stop = start(session)
+  }
+  try {
+    attached()
+  } catch (error) {
+    session.fault = error
+    display.update({ fault: error })
+    node.error(error, {})
+  }
+  node.on('close', (_removed, done) => {
+    session.closed = true
+    display.stop()
+    stop?.()
+    Promise.resolve(session.plc?.detach(node)).then(
+      () => done(),
+      () => done()
+    )
+  })
+  return session
+}
+
+module.exports = { openSession }

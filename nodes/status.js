@@ -1,0 +1,103 @@
+'use strict'
+
+/**
+ * What a node shows under itself. Pure: from a state to `{ fill, shape, key, values }`; a ring changes or is wrong, a dot is established.
+ *
+ * @typedef {object} State
+ * @property {{ code?: string } | null} [fault] the configuration cannot be used
+ * @property {{ state: string, reason?: { code: string } | null }} [line]
+ * @property {'idle'|'writing'|'read'|'failed'|'written'} [phase]
+ * @property {number} [count] values of the last read
+ * @property {number} [bad] how many of them are bad
+ * @property {string} [code] of the last failure
+ * @property {string} [outcome] of the last write
+ */
+
+const MOST = 19
+
+const REASONS = {
+  PORT_NOT_FOUND: 'noPort',
+  PORT_GONE: 'noPort',
+  PORT_BUSY: 'busy',
+  PORT_DENIED: 'denied',
+  WIRE_IN_USE: 'wire',
+  WIRE_CONFLICT: 'wire',
+  LINE_JAMMED: 'jammed'
+}
+
+const CAUSES = {
+  ...REASONS,
+  TIMEOUT: 'noAnswer',
+  STATION_WAITS: 'noAnswer',
+  INCOMPLETE: 'damaged',
+  CRC_ERROR: 'damaged',
+  BAD_ANSWER: 'damaged',
+  PLC_WRONG_FUNCTION: 'refused',
+  PLC_OUT_OF_RANGE: 'outOfRange',
+  PLC_WRONG_FRAME: 'refused',
+  PLC_NOT_PERFORMED: 'refused',
+  PLC_FRAME_TOO_LONG: 'refused',
+  PLC_NO_SERVICE: 'refused',
+  QUEUE_FULL: 'overload',
+  DEADLINE: 'overload',
+  LINE_DOWN: 'down',
+  LINE_CLOSED: 'down',
+  CONNECT_FAILED: 'down',
+  PORT_ERROR: 'down',
+  READ_ONLY: 'readOnly',
+  SUPERSEDED: 'superseded'
+}
+
+const OUTCOMES = {
+  confirmed: { fill: 'green', shape: 'dot', key: 'written' },
+  unknown: { fill: 'red', shape: 'ring', key: 'unknown' }
+}
+
+const show = (fill, shape, key, values = {}) => ({ fill, shape, key, values })
+const causeOf = (code, otherwise) => CAUSES[code] || otherwise
+
+const lineStatus = ({ state, reason }) => {
+  if (state === 'opening' || state === 'closed') return show('yellow', 'ring', 'connecting')
+  if (state === 'jammed') return show('red', 'ring', 'jammed')
+  return show('red', 'ring', REASONS[reason?.code] || 'down')
+}
+
+const readStatus = ({ count = 0, bad = 0, code }) => {
+  if (bad === 0) return show('green', 'dot', count === 1 ? 'value' : 'values', { count })
+  if (bad < count) return show('yellow', 'ring', 'someBad', { bad, count })
+  return show('red', 'ring', causeOf(code, 'error'))
+}
+
+const writeStatus = ({ outcome, code }) => {
+  const known = OUTCOMES[outcome]
+  if (known) return show(known.fill, known.shape, known.key)
+  return outcome === 'refused'
+    ? show('yellow', 'ring', causeOf(code, 'notWritten'))
+    : show('red', 'ring', causeOf(code, 'error'))
+}
+
+/**
+ * @param {State} state
+ * @returns {{ fill: string, shape: string, key: string, values: Record<string, any> }} `key` below `status.` in the catalogue
+ */
+const statusOf = state => {
+  if (state.fault) return show('red', 'ring', state.fault.code === 'READ_ONLY' ? 'readOnly' : 'config')
+  if (state.line && state.line.state !== 'open') return lineStatus(state.line)
+  if (state.phase === 'writing') return show('blue', 'ring', 'writing')
+  if (state.phase === 'read') return readStatus(state)
+  if (state.phase === 'failed') return show('red', 'ring', causeOf(state.code, 'error'))
+  if (state.phase === 'written') return writeStatus(state)
+  return show('grey', 'ring', 'waiting')
+}
+
+/**
+ * The text that fits under a node.
+ * @param {string} text
+ * @param {boolean} simulated
+ */
+const fitted = (text, simulated) => {
+  const whole = simulated ? `SIM ${text}` : text
+  return whole.length > MOST ? `${whole.slice(0, MOST - 1)}…` : whole
+}
+
+module.exports = { statusOf, fitted }

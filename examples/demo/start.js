@@ -1,0 +1,105 @@
+'use strict'
+
+/**
+ * `npm start`: two simulated NX PLCs on a virtual serial line, an MQTT broker, Node-RED with flow and dashboard.
+ *   npm start -- --seconds 20    ends by itself; the last line is what flowed, as JSON; code 1 if nothing did
+ */
+
+const { setTimeout: sleep } = require('node:timers/promises')
+const { parseArgs } = require('node:util')
+const { startBroker } = require('./broker')
+const { demoFlow } = require('./flow')
+const { freePort } = require('./ports')
+const { startRuntime } = require('./runtime')
+const { startStations } = require('./stations')
+const { watch } = require('./watcher')
+
+const print = text => process.stdout.write(`${text}\n`)
+
+/** What was started, last first; each closes once. */
+function pile() {
+  const parts = []
+  return {
+    add(part) {
+      parts.push(part)
+      return part
+    },
+    async close() {
+      for (const part of parts.splice(0).reverse()) await part.close()
+    }
+  }
+}
+
+/** Starts all parts; what had been started is on the pile even if a later part fails. */
+async function startAll(parts) {
+  const stations = parts.add(await startStations())
+  const mqttPort = await freePort(1883)
+  const broker = parts.add(await startBroker(mqttPort))
+  const watcher = parts.add(await watch(broker.url))
+  const port = await freePort(1880)
+  const flow = demoFlow({ line: stations.settings, mqttPort })
+  const runtime = parts.add(await startRuntime({ port, flow }))
+  return { stations, broker, watcher, runtime }
+}
+
+function show({ stations, broker, runtime }) {
+  print('')
+  print(`  Dashboard   ${runtime.url}/dashboard`)
+  print(`  Editor      ${runtime.url}/`)
+  print(`  MQTT        ${broker.url}   values: plant/#   set: plant/furnace/set/setpoint`)
+  print(`  Line        ${stations.address}   two simulated NX PLCs, stations 1 and 2, 38400 bit/s`)
+  print('')
+}
+
+/** From the first moment on: Ctrl-C while it still starts must clean up as well. */
+function catchSignals() {
+  const asked = new AbortController()
+  for (const signal of /** @type {const} */ (['SIGINT', 'SIGTERM', 'SIGHUP'])) {
+    process.on(signal, () => {
+      if (asked.signal.aborted) process.exit(130) // asked twice: at once
+      asked.abort()
+    })
+  }
+  return asked.signal
+}
+
+/** Resolves when the time is over or somebody ends the program. `seconds` 0: never by itself. */
+const untilEnd = (seconds, asked) =>
+  sleep(seconds ? seconds * 1000 : 2 ** 31 - 1, undefined, { signal: asked }).catch(() => {})
+
+function secondsFrom(args) {
+  const { values } = parseArgs({ args, options: { seconds: { type: 'string' } } })
+  if (values.seconds === undefined) return 0
+  const seconds = Number(values.seconds)
+  if (!(seconds > 0 && seconds <= 86400)) throw new Error('--seconds takes a number of seconds, 1 to 86400')
+  return seconds
+}
+
+async function main() {
+  const seconds = secondsFrom(process.argv.slice(2))
+  const asked = catchSignals()
+  const parts = pile()
+  let counts
+  try {
+    print('starting: simulated PLCs, MQTT broker, Node-RED ...')
+    const demo = await startAll(parts)
+    show(demo)
+    print(seconds ? `  ends by itself after ${seconds} s` : '  Ctrl-C ends it')
+    await untilEnd(seconds, asked)
+    counts = demo.watcher.counts()
+  } finally {
+    await parts.close()
+  }
+  print(JSON.stringify(counts))
+  // a run with a time is a test: values and a confirmed set value must have come through (the first one takes 3 s)
+  const flowed = asked.aborted || (counts.published > 0 && (counts.writesConfirmed > 0 || seconds < 5))
+  return seconds && !flowed ? 1 : 0
+}
+
+main().then(
+  code => process.exit(code),
+  error => {
+    process.stderr.write(`the demo could not start: ${error.message}\n`)
+    process.exit(1)
+  }
+)

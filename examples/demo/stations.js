@@ -1,0 +1,72 @@
+'use strict'
+
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+const { createNxLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
+
+const BAUD_RATE = 38400
+const TANK_PERIOD = 90000
+
+const { sin, cos, PI } = Math
+const tankFills = time => cos((2 * PI * time) / TANK_PERIOD) < 0
+
+/** What the two processes do: rows of lib/sim/behaviour.js. */
+const FURNACE = [
+  { at: 'M10', as: 'int16', kind: 'follows', of: 'K0', ofAs: 'int16', from: 250, tau: 12000, ripple: 3, every: 100 },
+  { at: 'M11', kind: 'follows', of: 'K0', gain: 0.24, from: 0, tau: 2500, ripple: 9, every: 100 },
+  { at: 'M12', as: 'float32', kind: 'counter', step: 0.004, every: 500 },
+  { at: 'M0.0', kind: 'toggle', period: 6000 }
+]
+const TANK = [
+  { at: 'M10', as: 'float32', kind: 'sine', from: 25, to: 90, period: TANK_PERIOD, every: 100 },
+  { at: 'M12', as: 'float32', kind: time => (tankFills(time) ? 4.2 + 0.15 * sin(time / 700) : 0), every: 100 },
+  { at: 'M14', as: 'int32', kind: 'counter', every: 7000 },
+  { at: 'M0.0', kind: time => Number(tankFills(time)), every: 100 }
+]
+
+/**
+ * Two simulated NX PLCs on one line at 38400 bit/s: behind a virtual serial port, or behind TCP where there is none.
+ * @returns {Promise<{ address: string, settings: object, line: object, close(): Promise<void> }>} settings: properties of `plc-line`
+ */
+async function startStations() {
+  const line = createNxLine({
+    stations: [
+      { station: 1, behaviour: FURNACE },
+      { station: 2, behaviour: TANK }
+    ],
+    baudRate: BAUD_RATE
+  })
+  const [furnace, tank] = line.plcs
+  furnace.set('K0', 1500)
+  tank.set('K0', 30)
+  try {
+    return { line, ...onPty(line) }
+  } catch (error) {
+    if (error.code !== 'NO_PTY') throw error
+    return { line, ...(await onTcp(line)) }
+  }
+}
+
+function onPty({ wire }) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'nx-demo-'))
+  const remove = () => fs.rmSync(folder, { recursive: true, force: true })
+  try {
+    const port = serveOnPty({ wire, link: path.join(folder, 'nx-line') })
+    const close = async () => {
+      port.close()
+      remove()
+    }
+    return { address: port.path(), settings: { transport: 'serial', path: port.path(), baudRate: BAUD_RATE }, close }
+  } catch (error) {
+    remove()
+    throw error
+  }
+}
+
+async function onTcp({ wire }) {
+  const { host, port, close } = await serveOnTcp({ wire })
+  return { address: `tcp://${host}:${port}`, settings: { transport: 'tcp', host, port, baudRate: BAUD_RATE }, close }
+}
+
+module.exports = { startStations }

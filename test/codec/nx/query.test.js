@@ -1,0 +1,250 @@
+'use strict'
+const assert = require('node:assert/strict')
+const fc = require('fast-check')
+const { encodeQuery, encodeResponseRequest, decodeQuery, isRepeatable } = require('../../../lib/codec/nx/query')
+const {
+  encodeAnswer,
+  encodeAcknowledge,
+  encodeError,
+  encodeNoService,
+  readAnswer
+} = require('../../../lib/codec/nx/answer')
+const { decodeFrame } = require('../../../lib/codec/nx/frame')
+const { limitsOf } = require('../../../lib/codec/nx/limits')
+const { frame, hex, show } = require('../support/oracle')
+const { EXCHANGES, QA, RR, ERROR_2 } = require('../../vectors/nx')
+
+const ends = { station: 1, master: 0xe2 }
+const codeOf = call => {
+  try {
+    call()
+  } catch (error) {
+    return error.code ?? error
+  }
+  return 'sent'
+}
+
+describe('NX queries and answers: the vectors', () => {
+  for (const { name, steps, query, q, values, r, station = 1, master = 0xe2 } of EXCHANGES) {
+    it(name, () => {
+      assert.equal(show(encodeQuery(query, { station, master, steps })), show(hex(q)))
+      assert.deepEqual(decodeQuery(decodeFrame(hex(q))), { query, steps })
+      if (!r) return
+      assert.equal(show(encodeAnswer(query, values, { station, master, steps })), show(hex(r)))
+      const phase = steps === 4 ? 'request' : 'query'
+      assert.deepEqual(readAnswer(decodeFrame(hex(r)), query, { steps, phase }), { values, nonStandard: false })
+    })
+  }
+
+  it('QA, RR, errors', () => {
+    assert.equal(show(encodeAcknowledge(ends)), QA)
+    assert.equal(show(encodeResponseRequest(ends)), RR)
+    assert.deepEqual(decodeQuery(decodeFrame(hex(RR))), { responseRequest: true })
+    assert.equal(show(encodeError(2, { ...ends, fn: 0x23 })), ERROR_2[0])
+    assert.equal(show(encodeError(2, { ...ends, fn: 0x23, printed: false })), ERROR_2[1])
+    assert.equal(show(encodeError(2, { ...ends, fn: 0x03, printed: false })), ERROR_2[0])
+    assert.equal(show(encodeNoService(ends)), show(frame([0xe2, 1, 0], [0])))
+  })
+})
+
+// the oracle: each function's INFO by hand from the manual's figures
+const oracle = {
+  readBits: ({ base, count }) => [base % 256, base >> 8, count],
+  readWords: ({ base, count }) => [base % 256, base >> 8, count],
+  writeBits: ({ base, values }) => [base % 256, base >> 8, ...values.map(value => (value ? 255 : 0))],
+  writeWords: ({ base, values }) => [base % 256, base >> 8, ...values.map(value => [value % 256, value >> 8]).flat()],
+  readMixed: ({ addresses }) =>
+    addresses.map(at => [at.address % 256, (at.address >> 8) + (at.kind === 'word' ? 64 : 0)]).flat(),
+  writeMixed: ({ writes }) =>
+    writes
+      .map(({ kind, address, value }) =>
+        kind === 'word'
+          ? [address % 256, (address >> 8) + 64, value % 256, value >> 8]
+          : [address % 256, address >> 8, value ? 255 : 0]
+      )
+      .flat()
+}
+const CODE = { readBits: 1, writeBits: 2, readWords: 3, writeWords: 4, readMixed: 5, writeMixed: 6 }
+
+const record = model => fc.record(model, { noNullPrototype: true })
+const kind = fc.constantFrom('bit', 'word')
+const place = record({ kind, address: fc.nat(0x3fff) })
+const withValue = place.chain(at =>
+  record({
+    kind: fc.constant(at.kind),
+    address: fc.constant(at.address),
+    value: at.kind === 'bit' ? fc.boolean() : fc.nat(0xffff)
+  })
+)
+const list = (of, maxLength) => fc.array(of, { minLength: 1, maxLength, size: 'max' })
+const anyQuery = fc.oneof(
+  record({ ask: fc.constant('readBits'), base: fc.nat(0xff00), count: fc.integer({ min: 1, max: 255 }) }),
+  record({ ask: fc.constant('readWords'), base: fc.nat(0xff00), count: fc.integer({ min: 1, max: 128 }) }),
+  record({ ask: fc.constant('writeBits'), base: fc.nat(0xff00), values: list(fc.boolean(), 254) }),
+  record({ ask: fc.constant('writeWords'), base: fc.nat(0xff00), values: list(fc.nat(0xffff), 127) }),
+  record({ ask: fc.constant('readMixed'), addresses: list(place, 128) }),
+  record({ ask: fc.constant('writeMixed'), writes: list(withValue, 64) })
+)
+const limits = limitsOf({ writeWords: 127 })
+
+describe('NX queries and answers: any', () => {
+  it('a query has the bytes of the oracle, and is read back', () => {
+    fc.assert(
+      fc.property(anyQuery, fc.constantFrom(2, 4), fc.nat(191), (query, steps, station) => {
+        const bytes = encodeQuery(query, { station, master: 0xe5, steps, limits })
+        const fn = CODE[query.ask] + (steps === 2 ? 0x20 : 0)
+        assert.equal(show(bytes), show(frame([station, 0xe5, fn], oracle[query.ask](query))))
+        assert.deepEqual(decodeQuery(decodeFrame(bytes)), { query, steps })
+        assert.equal(isRepeatable(query), query.ask.startsWith('read'))
+      })
+    )
+  })
+
+  it('an answer made by the oracle gives the values', () => {
+    const reads = anyQuery.filter(query => query.ask.startsWith('read'))
+    fc.assert(
+      fc.property(reads, fc.constantFrom(2, 4), fc.infiniteStream(fc.nat(0xffff)), (query, steps, stream) => {
+        const kinds =
+          query.addresses?.map(at => at.kind) ?? new Array(query.count).fill(query.ask === 'readBits' ? 'bit' : 'word')
+        const values = kinds.map(each => (each === 'bit' ? stream.next().value % 2 === 1 : stream.next().value))
+        const info = values.flatMap(value =>
+          typeof value === 'boolean' ? [value ? 255 : 0] : [value % 256, value >> 8]
+        )
+        const bytes = frame([0xe2, 1, CODE[query.ask] + (steps === 2 ? 0xa0 : 0x80)], info)
+        assert.deepEqual(readAnswer(decodeFrame(bytes), query, { steps, phase: 'request' }).values, values)
+        assert.equal(show(encodeAnswer(query, values, { ...ends, steps })), show(bytes))
+      })
+    )
+  })
+
+  it('any frame is understood or has an error number', () => {
+    const header = fc.oneof(fc.constantFrom(1, 2, 3, 4, 5, 6, 0x21, 0x22, 0x23, 0x24, 0x25, 0x26), fc.nat(255))
+    fc.assert(
+      fc.property(header, fc.uint8Array({ minLength: 1, maxLength: 256 }), (fn, info) => {
+        const got = decodeQuery({ to: 1, from: 0xe2, fn, info: Buffer.from(info) })
+        assert.ok(got.query || got.responseRequest || got.error === 1 || got.error === 3)
+      })
+    )
+  })
+})
+
+describe('NX queries: the PLC side refuses', () => {
+  const answer = (fn, info) => decodeQuery({ to: 1, from: 0xe2, fn, info: Buffer.from(info) }).error
+  it('functions unknown or without description: error 1', () => {
+    for (const fn of [0x27, 0x07, 0x20, 0x10, 0x2f, 0x30, 0x80, 0xa3, 0xff]) assert.equal(answer(fn, [0, 0, 1]), 1)
+  })
+  it('INFO that makes no sense: error 3', () => {
+    assert.equal(answer(0x00, [1]), 3)
+    assert.equal(answer(0x23, [0, 0]), 3)
+    assert.equal(answer(0x23, [0, 0, 1, 0]), 3)
+    assert.equal(answer(0x22, [0, 0]), 3)
+    assert.equal(answer(0x22, [0, 0, 1]), 3)
+    assert.equal(answer(0x24, [0, 0]), 3)
+    assert.equal(answer(0x24, [0, 0, 1]), 3)
+    assert.equal(answer(0x25, [0, 0, 1]), 3)
+    assert.equal(answer(0x25, [0, 0x80]), 3)
+    assert.equal(answer(0x26, [0, 0]), 3)
+    assert.equal(answer(0x26, [0, 0, 1]), 3)
+    assert.equal(answer(0x26, [0, 0x40, 1]), 3)
+    assert.equal(answer(0x26, [0, 0xc0, 1, 0]), 3)
+  })
+})
+
+describe('NX queries: limits', () => {
+  const send = (query, settings) =>
+    codeOf(() => encodeQuery(query, { ...ends, limits: settings && limitsOf(settings) }))
+  const words = n => ({ ask: 'writeWords', base: 0, values: new Array(n).fill(0) })
+  const bits = n => ({ ask: 'writeBits', base: 0, values: new Array(n).fill(false) })
+  const places = (n, of = 'word') => ({ ask: 'readMixed', addresses: new Array(n).fill({ kind: of, address: 0 }) })
+  const writes = (n, of) => ({
+    ask: 'writeMixed',
+    writes: new Array(n).fill({ kind: of, address: 0, value: of === 'bit' ? true : 7 })
+  })
+
+  it('the most of each function, and one more', () => {
+    const cases = [
+      [{ ask: 'readBits', base: 0, count: 255 }, 'sent'],
+      [{ ask: 'readBits', base: 0, count: 256 }, 'BAD_COUNT'],
+      [{ ask: 'readBits', base: 0, count: 0 }, 'BAD_COUNT'],
+      [{ ask: 'readWords', base: 0, count: 128 }, 'sent'],
+      [{ ask: 'readWords', base: 0, count: 129 }, 'BAD_COUNT'],
+      [{ ask: 'readWords', base: 0, count: 300 }, 'BAD_COUNT'],
+      [{ ask: 'readWords', base: 0, count: 0 }, 'BAD_COUNT'],
+      [bits(254), 'sent'],
+      [bits(255), 'BAD_COUNT'],
+      [bits(0), 'BAD_COUNT'],
+      [words(64), 'sent'],
+      [words(65), 'BAD_COUNT'],
+      [places(128), 'sent'],
+      [places(129), 'BAD_COUNT'],
+      [places(129, 'bit'), 'BAD_COUNT'],
+      [places(0), 'BAD_COUNT'],
+      [writes(85, 'bit'), 'sent'],
+      [writes(86, 'bit'), 'BAD_COUNT'],
+      [writes(64, 'word'), 'sent'],
+      [writes(65, 'word'), 'FRAME_TOO_LONG']
+    ]
+    for (const [query, outcome] of cases) assert.equal(send(query), outcome, JSON.stringify(query).slice(0, 60))
+    assert.equal(send(words(127), { writeWords: 127 }), 'sent')
+    assert.equal(send(words(128), { writeWords: 127 }), 'BAD_COUNT')
+  })
+
+  it('a stricter CPU', () => {
+    assert.equal(send(words(8), { info: 18 }), 'sent')
+    assert.equal(send(words(9), { info: 18 }), 'FRAME_TOO_LONG')
+    assert.equal(send({ ask: 'readWords', base: 0, count: 10 }, { info: 18 }), 'FRAME_TOO_LONG')
+    assert.equal(send({ ask: 'readWords', base: 0, count: 33 }, { readWords: 32 }), 'BAD_COUNT')
+    assert.equal(send({ ask: 'readWords', base: 0, count: 32 }, { readWords: '32' }), 'sent')
+    for (const settings of [
+      { writeWords: 128 },
+      { readWords: 0 },
+      { info: 257 },
+      { readBits: 1.5 },
+      { readBits: 'x' },
+      { words: 1 }
+    ]) {
+      assert.throws(() => limitsOf(settings), { code: 'BAD_SETTING' })
+    }
+  })
+
+  it('addresses end at FFFFh, in mixed frames at 3FFFh', () => {
+    assert.equal(send({ ask: 'readWords', base: 0xffff, count: 1 }), 'sent')
+    assert.equal(send({ ask: 'readWords', base: 0xffff, count: 2 }), 'BAD_ADDRESS')
+    assert.equal(send({ ask: 'readBits', base: 0x10000, count: 1 }), 'BAD_ADDRESS')
+    for (const base of [-1, 1.5, NaN, '1', undefined])
+      assert.equal(send({ ask: 'readWords', base, count: 1 }), 'BAD_ADDRESS')
+    for (const each of ['bit', 'word']) {
+      assert.equal(send({ ask: 'readMixed', addresses: [{ kind: each, address: 0x3fff }] }), 'sent')
+      assert.equal(send({ ask: 'readMixed', addresses: [{ kind: each, address: 0x4000 }] }), 'BAD_ADDRESS')
+    }
+  })
+
+  it('hostile queries have a code', () => {
+    const hostile = [
+      [undefined, 'FUNCTION_REFUSED'],
+      [null, 'FUNCTION_REFUSED'],
+      [{ ask: 'deleteProgram', base: 0, count: 1 }, 'FUNCTION_REFUSED'],
+      [{ ask: '__proto__' }, 'FUNCTION_REFUSED'],
+      [{ ask: 'readWords', base: 0 }, 'BAD_COUNT'],
+      [{ ask: 'readWords', base: 0, count: '2' }, 'BAD_COUNT'],
+      [{ ask: 'readWords', base: 0, count: NaN }, 'BAD_COUNT'],
+      [{ ask: 'writeWords', base: 0 }, 'BAD_COUNT'],
+      [{ ask: 'writeWords', base: 0, values: 'ab' }, 'BAD_COUNT'],
+      [{ ask: 'writeWords', base: 0, values: { length: 1e9 } }, 'BAD_COUNT'],
+      [{ ask: 'writeWords', base: 0, values: new Array(1e9) }, 'BAD_COUNT'],
+      [{ ask: 'writeWords', base: 0, values: new Array(2) }, 'BAD_VALUE'],
+      [{ ask: 'writeWords', base: 0, values: [65536] }, 'BAD_VALUE'],
+      [{ ask: 'writeWords', base: 0, values: [-1] }, 'BAD_VALUE'],
+      [{ ask: 'writeWords', base: 0, values: [1.5] }, 'BAD_VALUE'],
+      [{ ask: 'writeWords', base: 0, values: [true] }, 'BAD_VALUE'],
+      [{ ask: 'writeBits', base: 0, values: [1] }, 'BAD_VALUE'],
+      [{ ask: 'writeBits', base: 0, values: [null] }, 'BAD_VALUE'],
+      [{ ask: 'readMixed', addresses: [null] }, 'BAD_ADDRESS'],
+      [{ ask: 'readMixed', addresses: [{ kind: 'byte', address: 1 }] }, 'BAD_ADDRESS'],
+      [{ ask: 'readMixed', addresses: new Array(2) }, 'BAD_ADDRESS'],
+      [{ ask: 'writeMixed', writes: [{ kind: 'bit', address: 1, value: 1 }] }, 'BAD_VALUE'],
+      [{ ask: 'writeMixed', writes: [{ kind: 'word', address: 1, value: Symbol('x') }] }, 'BAD_VALUE']
+    ]
+    for (const [query, code] of hostile) assert.equal(send(query), code)
+  })
+})

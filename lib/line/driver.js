@@ -19,7 +19,8 @@ class Driver {
   /**
    * @param {any} parts `{ exchange, scheduler, quarantine, recorder }` of the line
    * @param {{ gap: number, latenessBound: number }} least of the line, in ms; runs and steps may ask for more
-   * @param {{ refusal: () => any, answered: () => void, troubled: (error: any) => void }} host
+   * @param {{ refusal: () => any, answered: () => void, troubled: (error: any) => void,
+   *   stray: (bytes: Buffer) => void }} host
    *   refusal: why nothing can be sent now, or null
    */
   constructor({ exchange, scheduler, quarantine, recorder }, least, host) {
@@ -81,6 +82,7 @@ class Driver {
       this.#quarantine.answered(station, answer)
       this.#host.answered()
     }
+    if (facts.rest.length > 0) this.#host.stray(facts.rest)
     this.#resume(run, error, answer)
     this.pump()
   }

@@ -56,7 +56,8 @@ class Exchange {
   /**
    * @param {any} step of a conversation
    * @param {{ gap: number, station: any, sent: () => void, done: (error: any, answer: Buffer, facts: any) => void }} options
-   *   facts: `{ due, sent, ms }` — when the answer should have begun; whether a byte went out; ms since the end of sending
+   *   facts: `{ due, sent, ms, rest }` — when the answer should have begun; whether a byte went out; ms since the end of
+   *   sending; what came behind the answer
    */
   start(step, { gap, station, sent, done }) {
     const now = this.#clock.now()
@@ -78,7 +79,7 @@ class Exchange {
 
   #send() {
     const job = this.#job
-    const { send, match } = job.step
+    const { send } = job.step
     this.#echo.sent(send)
     this.#rx.takeAll()
     job.phase = 'awaiting'
@@ -89,7 +90,6 @@ class Exchange {
     this.#link.write(send, error => this.#written(job, error))
     job.writing = false
     if (this.#job !== job) return
-    if (match) this.#hint(this.#echo.expected + (match(EMPTY).need ?? 1), this.#sendEnd)
     this.#look()
   }
 
@@ -102,9 +102,13 @@ class Exchange {
     if (!job.writing) this.#look()
   }
 
-  /** Before this many bytes can have come nobody needs to read. */
-  #hint(count, from) {
-    if (count > 0) this.#link.hint(count, from + (count - this.#echo.expected) * this.#times.character)
+  /** Tells the transport how long nobody needs to read: after sending, and after a part of the answer. */
+  #hint({ need }, fresh) {
+    const count = need - this.#rx.bytes.length
+    const from = fresh ? this.#lastByteAt : this.#sendEnd
+    // our own echo comes while we send
+    const echo = this.#rx.bytes.length === 0 ? this.#echo.expected : 0
+    if (count > 0) this.#link.hint(count, from + (count - echo) * this.#times.character)
   }
 
   /** Bytes arrived. @param {Buffer} bytes */
@@ -128,12 +132,13 @@ class Exchange {
       try {
         verdict = this.#judge(job.step)
       } catch (error) {
-        return this.#fail(error)
+        // a recogniser that throws ends its run, not the process
+        return this.#job === job ? this.#fail(error) : undefined
       }
       if (this.#job !== job) return
       job.need = verdict.need ?? 1
       job.ours = verdict.ours ?? false
-      if (fresh && this.#rx.bytes.length > 0) this.#hint(job.need - this.#rx.bytes.length, this.#lastByteAt)
+      this.#hint(job, fresh)
     }
     this.#arm(this.#dueTime(job))
   }
@@ -141,7 +146,7 @@ class Exchange {
   #judge(step) {
     for (;;) {
       const { bytes } = this.#rx
-      if (bytes.length === 0) return { need: 1 }
+      if (bytes.length === 0) return { need: this.#echo.expected + step.match(EMPTY).need }
       const echo = this.#echo.look(bytes)
       if (echo > 0) {
         this.#link.echoed(this.#rx.take(echo))
@@ -260,9 +265,8 @@ class Exchange {
     const job = this.#job
     this.#idle()
     const rest = this.#rx.takeAll()
-    if (rest.length > 0) this.#link.stray(rest)
     const due = this.#sendEnd + (job.step.timeout ?? 0)
-    job.done(error, bytes, { due, sent: job.phase === 'awaiting', ms: this.#clock.now() - this.#sendEnd })
+    job.done(error, bytes, { due, rest, sent: job.phase === 'awaiting', ms: this.#clock.now() - this.#sendEnd })
   }
 }
 

@@ -54,7 +54,8 @@ class Line extends EventEmitter {
     this.#settings = settings
     this.#times = lineTimes(settings)
     this.#recorder = new Recorder(clock)
-    this.#quarantine = new Quarantine({ clock, memories, late: (fact, frame) => this.#late(fact, frame) })
+    const late = (fact, frame) => this.#late(fact, frame)
+    this.#quarantine = new Quarantine({ clock, memories, late, freed: () => this.#driver.pump() })
     const readyAt = station => this.#quarantine.readyAt(station)
     this.#scheduler = new Scheduler({ clock, settings, readyAt, awake: () => this.#driver.pump() })
     this.#echo = new Echo(settings.echo)
@@ -90,7 +91,8 @@ class Line extends EventEmitter {
     return new Driver(parts, least, {
       refusal: () => (this.#state === 'open' && !this.#closing ? null : this.#refusal()),
       answered: () => this.#answered(),
-      troubled: error => this.#troubled(error)
+      troubled: error => this.#troubled(error),
+      stray: bytes => this.#unclaimed('stray', bytes)
     })
   }
 

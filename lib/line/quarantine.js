@@ -20,16 +20,19 @@ class Quarantine {
   #clock
   #memories
   #late
+  #freed
+  /** newest first */
   #watchers = []
 
   /**
-   * @param {{ clock: any, memories: Map<any, any>, late: (fact: any, bytes: Buffer) => void }} options
-   *   memories: per station, kept by the pool; late: told of each late answer
+   * @param {{ clock: any, memories: Map<any, any>, late: (fact: any, bytes: Buffer) => void, freed: () => void }} options
+   *   memories: per station, kept by the pool; late: told of each late answer; freed: a station may be asked earlier
    */
-  constructor({ clock, memories, late }) {
+  constructor({ clock, memories, late, freed }) {
     this.#clock = clock
     this.#memories = memories
     this.#late = late
+    this.#freed = freed
   }
 
   /** The station's memory; survives redeploys. */
@@ -69,9 +72,15 @@ class Quarantine {
     const from = Math.max(this.#clock.now(), due)
     memory.until = Math.max(memory.until, from + memory.bound)
     if (!match) return
-    this.#watchers.push({ station, match, due, timeout, bytes: EMPTY, until: from + WATCH * memory.bound })
-    if (this.#watchers.length > MOST_WATCHERS) this.#watchers.shift()
-    if (seen.length > 0) this.#watchers[this.#watchers.length - 1].bytes = seen
+    this.#watchers.unshift({
+      station,
+      match: guarded(match),
+      due,
+      timeout,
+      bytes: seen,
+      until: from + WATCH * memory.bound
+    })
+    if (this.#watchers.length > MOST_WATCHERS) this.#watchers.pop()
   }
 
   /** The port was opened: what lies in the buffers of adapters and servers may be answers to old queries. */
@@ -93,36 +102,63 @@ class Quarantine {
     if (this.#watchers.length === 0) return
     const now = this.#clock.now()
     this.#watchers = this.#watchers.filter(w => w.until > now)
-    for (const watcher of [...this.#watchers]) this.#look(watcher, bytes, now)
-  }
-
-  #look(watcher, bytes, now) {
-    watcher.bytes = watcher.bytes.length === 0 ? bytes : Buffer.concat([watcher.bytes, bytes])
-    while (watcher.bytes.length > 0) {
-      const { take, skip, bad, length } = watcher.match(watcher.bytes)
-      if (take > 0) return this.#taken(watcher, watcher.bytes.subarray(0, take), now)
-      const drop = bad ? (length ?? watcher.bytes.length) : (skip ?? 0)
-      if (!(drop > 0)) break
-      watcher.bytes = watcher.bytes.subarray(drop)
+    const watchers = this.#watchers
+    for (const watcher of watchers) append(watcher, bytes)
+    for (const watcher of watchers) {
+      const frame = search(watcher)
+      if (frame.length > 0) this.#taken(watcher, frame, now)
     }
-    if (watcher.bytes.length > MOST_BYTES) watcher.bytes = watcher.bytes.subarray(watcher.bytes.length - MOST_BYTES)
   }
 
   #taken(watcher, frame, now) {
     const { station, timeout, due } = watcher
     this.#watchers = this.#watchers.filter(w => w !== watcher)
+    // where nothing in the frame tells which query it answers: the newest; the others did not see it
+    const others = this.#watchers.filter(w => w.station === station)
+    for (const other of others) other.bytes = watcher.bytes
     const memory = this.memory(station)
     const lateness = now - due
     // in time, but nobody waited any more (a redeploy): nothing else can come
     if (lateness <= 0) {
-      if (!this.#watchers.some(w => w.station === station)) memory.until = Math.min(memory.until, now)
-      return
+      if (others.length > 0) return
+      memory.until = Math.min(memory.until, now)
+      return this.#freed()
     }
     memory.lateness = Math.min(MOST_LEARNT, Math.max(memory.lateness, lateness))
     this.#bind(memory)
     memory.until = Math.max(memory.until, now + memory.bound)
     this.#late({ station, lateness, timeout, bound: memory.bound }, frame)
   }
+}
+
+/** A recogniser that throws recognises nothing: it has already ended its own run. */
+const guarded = match => bytes => {
+  try {
+    return match(bytes)
+  } catch {
+    return {}
+  }
+}
+
+const append = (watcher, bytes) => {
+  const all = watcher.bytes.length === 0 ? bytes : Buffer.concat([watcher.bytes, bytes])
+  watcher.bytes = all.length > MOST_BYTES ? all.subarray(all.length - MOST_BYTES) : all
+}
+
+/** Looks for the awaited frame; takes it and all before it out of the watcher's bytes. Empty: it is not there (yet). */
+const search = watcher => {
+  while (watcher.bytes.length > 0) {
+    const { take, skip, bad, length } = watcher.match(watcher.bytes)
+    if (take > 0 && take <= watcher.bytes.length) {
+      const frame = watcher.bytes.subarray(0, take)
+      watcher.bytes = watcher.bytes.subarray(take)
+      return frame
+    }
+    const drop = bad ? (length ?? watcher.bytes.length) : (skip ?? 0)
+    if (!(drop > 0)) return EMPTY
+    watcher.bytes = watcher.bytes.subarray(drop)
+  }
+  return EMPTY
 }
 
 module.exports = { Quarantine }

@@ -12,34 +12,339 @@ const answering =
 
 const near = (got, wanted, name) => assert.ok(Math.abs(got - wanted) < 0.01, `${name}: ${got}, wanted ${wanted}`)
 
-describe('line: one exchange', () => {
-  it('gives the data of the answer', async () => {
-    const { lease, run } = createBench({ onQuery: answering([1, 2, 3]) })
-    assert.deepEqual(await run(lease.run(() => toy.ask(5), { station: 5 })), [1, 2, 3])
-    await run(lease.release())
+/** Asks station 5 once; the wire answers with these pieces, `[ms after the query, hex]`. */
+async function exchange(pieces, { settings, options } = {}) {
+  const bench = createBench({
+    settings,
+    onQuery: (_, wire) => pieces.forEach(([after, hex]) => wire.reply(Buffer.from(hex, 'hex'), { after }))
+  })
+  const { lease, run, clock, wire } = bench
+  const promise = lease.run(() => toy.ask(5, options), { station: 5 })
+  const [result] = await run(Promise.allSettled([promise]))
+  const ms = clock.now() - wire.queryEnd
+  return { ...bench, ms, value: result.value, error: result.reason, stats: lease.line.stats() }
+}
+
+// 41 = answer, station 05, nonce 00, two bytes 01 02, sum 4b
+const ANSWER = '4105000201024b'
+
+describe('line: the answer', () => {
+  it('is taken, and timed from the end of the query', async () => {
+    const { value, stats } = await exchange([[5, ANSWER]])
+    assert.deepEqual(value, [1, 2])
+    near(stats.stations[5].latency.mean, 5, 'latency')
+    assert.deepEqual([stats.queries, stats.answers, stats.bytesOut, stats.bytesIn], [1, 1, 4, 7])
+    near(stats.busy, 4 * CHARACTER + 5, 'busy')
   })
 
-  it('takes an answer that comes in single bytes', async () => {
-    const { lease, run } = createBench({
-      onQuery: (bytes, wire) =>
-        [...toy.answer(5, [1, 2])].forEach((b, i) => wire.reply(Buffer.from([b]), { after: 5 + i }))
+  for (let at = 1; at < 7; at++) {
+    it(`is taken when it comes in two pieces, cut after ${at} bytes`, async () => {
+      const { value } = await exchange([
+        [5, ANSWER.slice(0, 2 * at)],
+        [9, ANSWER.slice(2 * at)]
+      ])
+      assert.deepEqual(value, [1, 2])
     })
-    assert.deepEqual(await run(lease.run(() => toy.ask(5), { station: 5 })), [1, 2])
-    await run(lease.release())
+  }
+
+  it('is taken after noise, another station and a wrong nonce', async () => {
+    const { value, stats } = await exchange([[5, `00ff${'41060001074f'}${'41050301074f'}${ANSWER}`]])
+    assert.deepEqual(value, [1, 2])
+    assert.equal(stats.skippedBytes, 14)
   })
 
-  it('times out from the computed end of sending', async () => {
-    const { clock, lease, run, wire } = createBench()
-    const error = await run(failure(lease.run(() => toy.ask(5, { timeout: 200 }), { station: 5 })))
+  it('takes the exact length; the rest is counted as stray', async () => {
+    const { value, stats } = await exchange([[5, `${ANSWER}${ANSWER}99`]])
+    assert.deepEqual(value, [1, 2])
+    assert.equal(stats.strayBytes, 8)
+  })
+
+  it('may begin just before the timeout', async () => {
+    const { value } = await exchange([
+      [199, ANSWER.slice(0, 4)],
+      [202, ANSWER.slice(4)]
+    ])
+    assert.deepEqual(value, [1, 2])
+  })
+
+  it('does not come: TIMEOUT, from the computed end of sending', async () => {
+    const { error, ms, stats } = await exchange([])
     assert.equal(error.code, 'TIMEOUT')
-    near(clock.now() - wire.sent[0].at, 4 * CHARACTER + 200, 'time until the error')
+    assert.deepEqual(error.details, { station: 5, timeout: 200, sent: true })
+    near(ms, 200, 'waited')
+    assert.equal(stats.timeouts, 1)
+  })
+
+  it('stops early: INCOMPLETE with the numbers, at once after the wire time and slack', async () => {
+    const { error, ms, stats } = await exchange([[10, ANSWER.slice(0, 10)]])
+    assert.equal(error.code, 'INCOMPLETE')
+    assert.match(error.message, /stopped after 5 of 7 bytes/)
+    near(ms, 10 + 7 * CHARACTER + 50, 'waited')
+    assert.equal(stats.incomplete, 1)
+  })
+
+  it('has the slack of the setting', async () => {
+    const { ms } = await exchange([[10, ANSWER.slice(0, 10)]], { settings: { slack: 20 } })
+    near(ms, 10 + 7 * CHARACTER + 20, 'waited')
+  })
+
+  it('is damaged: CRC_ERROR at once', async () => {
+    const { error, ms, stats } = await exchange([[10, `${ANSWER.slice(0, -2)}00`]])
+    assert.equal(error.code, 'CRC_ERROR')
+    near(ms, 10, 'waited')
+    assert.equal(stats.crcErrors, 1)
+  })
+
+  it('of somebody else neither shortens nor prolongs the wait', async () => {
+    const pieces = [10, 60, 110, 160, 199].map(ms => [ms, '410600010700'])
+    const { error, ms } = await exchange(pieces)
+    assert.equal(error.code, 'TIMEOUT')
+    near(ms, 200, 'waited')
+  })
+
+  it('of unknown origin prolongs the wait by its wire time only', async () => {
+    const { error, ms } = await exchange([
+      [150, '41'],
+      [230, '41'],
+      [270, '41']
+    ])
+    assert.equal(error.code, 'TIMEOUT')
+    assert.ok(ms >= 200 && ms < 320, `waited ${ms}`)
+  })
+
+  it('is looked for in a bounded buffer', async () => {
+    const flood = Array.from({ length: 40 }, (_, i) => [5 + i, 'ff'.repeat(1000)])
+    const { value } = await exchange([...flood, [50, ANSWER]])
+    assert.deepEqual(value, [1, 2])
+  })
+
+  it('ends the run, not the process, if its recogniser throws', async () => {
+    const { lease, run } = createBench({ onQuery: answering() })
+    const broken = () => {
+      throw new Error('broken')
+    }
+    const step = { send: Buffer.from([1]), match: broken, timeout: 50 }
+    const error = await run(
+      failure(
+        lease.run(
+          function* () {
+            yield step
+          },
+          { station: 1 }
+        )
+      )
+    )
+    assert.equal(error.message, 'broken')
+    assert.deepEqual(await run(lease.run(() => toy.ask(2), { station: 2 })), [7])
+  })
+})
+
+describe('line: what is not a conversation', () => {
+  const refused = [
+    ['no bytes', { send: Buffer.alloc(0), match: () => ({ need: 1 }), timeout: 10 }, /bytes to send/],
+    ['no timeout', { send: Buffer.from([1]), match: () => ({ need: 1 }) }, /timeout/],
+    ['nothing', undefined, /bytes to send/]
+  ]
+  for (const [name, step, text] of refused) {
+    it(`a step with ${name}`, async () => {
+      const { lease, run, wire } = createBench()
+      const make = function* () {
+        yield step
+      }
+      assert.match((await run(failure(lease.run(make, { station: 1 })))).message, text)
+      assert.equal(wire.sent.length, 0)
+    })
+  }
+
+  it('a conversation that asks nothing just returns', async () => {
+    const { lease, run } = createBench()
+    // eslint-disable-next-line require-yield
+    const make = function* () {
+      return 'nothing to do'
+    }
+    assert.equal(await run(lease.run(make, { station: 1 })), 'nothing to do')
+  })
+
+  it('a maker that throws rejects', async () => {
+    const { lease, run } = createBench()
+    const make = () => {
+      throw new RangeError('no')
+    }
+    assert.equal((await run(failure(lease.run(make, { station: 1 })))).message, 'no')
+  })
+
+  it('an unknown priority', async () => {
+    const { lease, run } = createBench()
+    assert.match((await run(failure(lease.run(() => toy.ask(1), { station: 1, priority: 9 })))).message, /priority/)
+  })
+})
+
+describe('line: the gap', () => {
+  const twice = async (settings, options = {}) => {
+    const { lease, run, wire } = createBench({ settings, onQuery: answering() })
+    await run(
+      Promise.all(
+        [1, 2].map(n => lease.run(() => toy.ask(n, options), { station: n, priority: PRIORITY.POLL, ...options.run }))
+      )
+    )
+    return wire.sent[1].at - wire.sent[0].at - 4 * CHARACTER - 5
+  }
+
+  it('is 3.5 characters', async () => near(await twice({}), 3.5 * CHARACTER, 'gap'))
+  it('is the setting', async () => near(await twice({ gap: 10 }), 10, 'gap'))
+  it('is the larger one of the step', async () => near(await twice({ gap: 10 }, { gap: 30 }), 30, 'gap'))
+  it('is the larger one of the run', async () => near(await twice({}, { run: { gap: 15 } }), 15, 'gap'))
+
+  it('starts anew with every byte, and what came before the query is dropped', async () => {
+    const { lease, run, wire, clock } = createBench({
+      settings: { gap: 10 },
+      onQuery: (bytes, w, n) => w.reply(toy.answer(bytes[1], [n]), { after: 5 })
+    })
+    await run(lease.run(() => toy.ask(1), { station: 1 }))
+    wire.reply(Buffer.from(ANSWER, 'hex'), { after: 9 })
+    const start = clock.now()
+    assert.deepEqual(await run(lease.run(() => toy.ask(5), { station: 5 })), [2])
+    near(wire.sent[1].at - start, 4 + 10, 'from the first answer')
+    assert.equal(lease.line.stats().strayBytes, 7)
+  })
+
+  it('is kept after a frame whose asker went away in the middle of it', async () => {
+    const { lease, run, wire, clock, open } = createBench({ settings: { baudRate: 300 }, onQuery: answering() })
+    const other = open({ baudRate: 300 }, 'other')
+    const character = 10000 / 300
+    const first = failure(lease.run(() => toy.ask(1), { station: 1 }))
+    await clock.advance(1)
+    const second = other.run(() => toy.ask(2), { station: 2 })
+    await lease.release()
+    assert.equal((await first).code, 'LINE_CLOSED')
+    wire.onQuery = answering([9])
+    await run(second)
+    assert.ok(wire.sent[1].at - wire.sent[0].at >= 4 * character + 3.5 * character - 0.01)
+  })
+})
+
+describe('line: a jammed line', () => {
+  const jam = async () => {
+    const bench = createBench()
+    const { clock, wire, lease } = bench
+    await clock.advance(1)
+    let on = true
+    const babble = () => {
+      if (!on) return
+      wire.handlers.data(Buffer.alloc(16, 0xaa))
+      clock.setTimer(babble, 1)
+    }
+    babble()
+    const events = []
+    lease.on('event', event => events.push(event.event))
+    return { ...bench, events, stop: () => (on = false) }
+  }
+
+  it('is never sent into; requests end with LINE_JAMMED', async () => {
+    const { clock, wire, lease, run, events } = await jam()
+    const start = clock.now()
+    const asked = [1, 2].map(n => failure(lease.run(() => toy.ask(n), { station: n })))
+    const errors = await run(Promise.all(asked))
+    assert.deepEqual(
+      errors.map(e => [e.code, e.details.sent]),
+      [
+        ['LINE_JAMMED', false],
+        ['LINE_JAMMED', false]
+      ]
+    )
+    assert.ok(clock.now() - start >= 1000 && clock.now() - start < 1003)
+    assert.equal(wire.sent.length, 0)
+    assert.equal(lease.line.state, 'jammed')
+    assert.deepEqual(events, ['jammed'])
+    const at = clock.now()
+    assert.equal((await run(failure(lease.run(() => toy.ask(3), { station: 3 })))).code, 'LINE_JAMMED')
+    assert.equal(clock.now(), at)
     await run(lease.release())
   })
 
-  it('keeps the gap after the last byte', async () => {
-    const { lease, run, wire } = createBench({ onQuery: answering() })
-    await run(Promise.all([1, 2].map(n => lease.run(() => toy.ask(n), { station: n, priority: PRIORITY.POLL }))))
-    near(wire.sent[1].at - wire.sent[0].at, 4 * CHARACTER + 5 + 3.5 * CHARACTER, 'from query to query')
+  it('goes on by itself when it is silent again', async () => {
+    const { clock, wire, lease, run, stop } = await jam()
+    await run(failure(lease.run(() => toy.ask(1), { station: 1 })))
+    await clock.advance(5000)
+    assert.equal(lease.line.state, 'jammed')
+    stop()
+    await clock.advance(30)
+    assert.equal(lease.line.state, 'open')
+    wire.onQuery = answering()
+    assert.deepEqual(await run(lease.run(() => toy.ask(1), { station: 1 })), [7])
+    assert.ok(lease.line.trace().length < 20, 'the flood is one row of the trace')
     await run(lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+})
+
+describe('line: sending', () => {
+  it('that the port does not take ends with WRITE_STALLED, and the port is opened anew', async () => {
+    const opened = []
+    const stalling = () => {
+      const transport = {
+        open: handlers => {
+          opened.push(transport)
+          transport.handlers = handlers
+          handlers.opened()
+        },
+        write: (bytes, done) => {
+          if (opened.length === 1) return
+          done()
+          transport.handlers.data(toy.answer(bytes[1], [3]))
+        },
+        hint: () => {},
+        close: done => done(),
+        id: () => 'stalling'
+      }
+      return transport
+    }
+    const { lease, run, clock } = createBench({ transports: { simulated: stalling } })
+    const start = clock.now()
+    const error = await run(failure(lease.run(() => toy.ask(1), { station: 1 })))
+    assert.equal(error.code, 'WRITE_STALLED')
+    assert.equal(error.details.sent, true)
+    near(clock.now() - start, 4 * CHARACTER + 1000, 'noticed after')
+    assert.equal((await run(failure(lease.run(() => toy.ask(1), { station: 1 })))).code, 'WRITE_STALLED')
+    await clock.advance(300)
+    assert.equal(opened.length, 2)
+    assert.deepEqual(await run(lease.run(() => toy.ask(1), { station: 1 })), [3])
+  })
+
+  it('of a broadcast waits for the turnaround, and counts no timeout', async () => {
+    const { lease, run, clock, wire } = createBench({ settings: { baudRate: 9600 } })
+    const make = function* () {
+      const nothing = yield { send: Buffer.from('0102', 'hex'), match: null, turnaround: 80 }
+      return nothing.length
+    }
+    assert.equal(await run(lease.run(make, { station: 'all' })), 0)
+    near(clock.now() - wire.sent[0].at, 2 * (10000 / 9600) + 80, 'waited')
+    assert.equal(lease.line.stats().timeouts, 0)
+    assert.equal(lease.line.stats().answers, 0)
+  })
+
+  it('tells the transport before when nobody needs to read', async () => {
+    const hints = []
+    const bench = createBench({
+      transports: {
+        simulated: (settings, clock) => ({
+          ...require('../../lib/line/transports/memory').simulated(settings, clock),
+          hint: (count, at) => hints.push([count, at])
+        })
+      },
+      onQuery: (_, w) => {
+        w.reply(Buffer.from(ANSWER.slice(0, 10), 'hex'), { after: 5 })
+        w.reply(Buffer.from(ANSWER.slice(10), 'hex'), { after: 8 })
+      }
+    })
+    await bench.run(bench.lease.run(() => toy.ask(5), { station: 5 }))
+    const end = bench.wire.queryEnd
+    assert.equal(hints.length, 2)
+    // the shortest answer has 5 bytes
+    assert.equal(hints[0][0], 5)
+    near(hints[0][1], end + 5 * CHARACTER, 'first')
+    // 5 of 7 are there
+    assert.equal(hints[1][0], 2)
+    near(hints[1][1], end + 5 + 2 * CHARACTER, 'second')
   })
 })

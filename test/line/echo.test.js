@@ -1,0 +1,100 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { createBench, failure } = require('./support/bench')
+const toy = require('./support/toy')
+
+/** A wire that hears itself (or not), with a station that answers (or not). */
+const wired =
+  ({ echo = true, answers = true, noise = '' } = {}) =>
+  (bytes, wire) => {
+    if (echo) wire.reply(Buffer.concat([Buffer.from(noise, 'hex'), bytes]), { after: 0 })
+    if (!answers) return
+    const answer = bytes[0] === 0x57 ? Buffer.from(bytes) : toy.answer(bytes[1], [7], bytes[2])
+    wire.reply(answer, { after: 5 })
+  }
+
+const ask = bench => bench.run(bench.lease.run(() => toy.ask(1), { station: 1 }))
+const put = bench => bench.run(bench.lease.run(() => toy.put(1, 9), { station: 1 }))
+
+describe('line: the echo of a 2-wire adapter', () => {
+  it('is found out from the first answered read, and stripped', async () => {
+    const bench = createBench({ onQuery: wired() })
+    assert.equal(bench.lease.line.echo, 'unknown')
+    assert.deepEqual(await ask(bench), [7])
+    assert.equal(bench.lease.line.echo, 'present')
+    assert.equal(await put(bench), 'confirmed')
+    assert.equal(bench.lease.line.stats().echoes, 2)
+  })
+
+  it('is not there: found out likewise, and a copy is an answer', async () => {
+    const bench = createBench({ onQuery: wired({ echo: false }) })
+    await ask(bench)
+    assert.equal(bench.lease.line.echo, 'absent')
+    assert.equal(await put(bench), 'confirmed')
+  })
+
+  it('confirms no write while it is unknown', async () => {
+    const bench = createBench({ onQuery: wired({ answers: false }) })
+    assert.equal((await failure(put(bench))).code, 'TIMEOUT')
+    assert.equal(bench.lease.line.echo, 'unknown')
+  })
+
+  it('confirms no write once it is known', async () => {
+    const bench = createBench({ onQuery: wired() })
+    await ask(bench)
+    bench.wire.onQuery = wired({ answers: false })
+    assert.equal((await failure(put(bench))).code, 'TIMEOUT')
+  })
+
+  it('confirms no write behind a byte of noise', async () => {
+    const bench = createBench({ onQuery: wired() })
+    await ask(bench)
+    bench.wire.onQuery = wired({ answers: false, noise: 'ff' })
+    assert.equal((await failure(put(bench))).code, 'TIMEOUT')
+  })
+
+  it('is not declared absent when it may have come damaged', async () => {
+    const bench = createBench({
+      onQuery: (bytes, wire) => {
+        wire.reply(Buffer.from([0x51, 0x01, 0x80, 0x56]), { after: 0 })
+        wire.reply(toy.answer(1, [7]), { after: 5 })
+      }
+    })
+    assert.deepEqual(await ask(bench), [7])
+    assert.equal(bench.lease.line.echo, 'unknown')
+  })
+
+  it('in unknown state needs two copies for a write', async () => {
+    const bench = createBench({ onQuery: wired() })
+    assert.equal(await put(bench), 'confirmed')
+    assert.equal(bench.lease.line.echo, 'present')
+  })
+
+  it('comes in pieces', async () => {
+    const bench = createBench({
+      onQuery: (bytes, wire) => {
+        bytes.forEach((b, i) => wire.reply(Buffer.from([b]), { after: i / 2 }))
+        wire.reply(toy.answer(1, [7]), { after: 5 })
+      }
+    })
+    assert.deepEqual(await ask(bench), [7])
+    assert.equal(bench.lease.line.echo, 'present')
+  })
+
+  it('is asked for anew when the port is opened again', async () => {
+    const bench = createBench({ onQuery: wired() })
+    await ask(bench)
+    bench.wire.unplug()
+    await bench.clock.advance(500)
+    assert.equal(bench.lease.line.state, 'open')
+    assert.equal(bench.lease.line.echo, 'unknown')
+  })
+
+  it('can be set', async () => {
+    const on = createBench({ settings: { echo: 'on' }, onQuery: wired({ answers: false }) })
+    assert.equal((await failure(put(on))).code, 'TIMEOUT')
+    const off = createBench({ settings: { echo: 'off' }, onQuery: wired({ echo: false }) })
+    assert.equal(await put(off), 'confirmed')
+  })
+})

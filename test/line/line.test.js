@@ -1,0 +1,272 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { PRIORITY } = require('../../lib/line')
+const { PlcError } = require('../../lib/error')
+const { createBench, failure } = require('./support/bench')
+const toy = require('./support/toy')
+
+const { WRITE, ASK, POLL } = PRIORITY
+const answering = (bytes, wire) => wire.reply(toy.answer(bytes[1], [bytes[1]], bytes[2]))
+
+describe('line: requests', () => {
+  it('go one at a time, writes before asks before polls', async () => {
+    const { lease, run, wire, clock } = createBench({ onQuery: answering })
+    await clock.advance(1)
+    const asked = [
+      [1, POLL],
+      [2, POLL],
+      [3, ASK],
+      [4, WRITE]
+    ].map(([station, priority]) => lease.run(() => toy.ask(station), { station, priority }))
+    await run(Promise.all(asked))
+    assert.deepEqual(
+      wire.sent.map(({ bytes }) => bytes[1]),
+      [1, 4, 3, 2]
+    )
+  })
+
+  it('with the same key that still wait are shared, and counted', async () => {
+    const { lease, run, wire, open } = createBench({ onQuery: answering })
+    const other = open({}, 'other')
+    const poll = l => l.run(() => toy.ask(1), { station: 1, priority: POLL, key: 'M0' })
+    const values = await run(Promise.all([poll(lease), poll(lease), poll(other)]))
+    assert.deepEqual(values, [[1], [1], [1]])
+    assert.equal(wire.sent.length, 1)
+    assert.equal(lease.line.stats().overruns, 2)
+    // one on the wire and one that waits
+    const first = poll(lease)
+    const rest = [poll(lease), poll(lease)]
+    await run(Promise.all([first, ...rest]))
+    assert.equal(wire.sent.length, 3)
+  })
+
+  it('with the same key of another station or class are not; writes never', async () => {
+    const { lease, run, wire } = createBench({ onQuery: answering })
+    const go = (station, priority) => lease.run(() => toy.ask(station), { station, priority, key: 'k' })
+    await run(Promise.all([go(1, POLL), go(2, POLL), go(1, ASK), go(1, WRITE), go(1, WRITE)]))
+    assert.equal(wire.sent.length, 5)
+  })
+
+  it('that are shared go on for the others when one leaves', async () => {
+    const { lease, run, open } = createBench({ onQuery: answering })
+    const other = open({}, 'other')
+    const poll = l => l.run(() => toy.ask(1), { station: 1, priority: POLL, key: 'M0' })
+    const mine = failure(poll(lease))
+    const others = poll(other)
+    await lease.release()
+    assert.equal((await mine).code, 'LINE_CLOSED')
+    assert.deepEqual(await run(others), [1])
+  })
+
+  it('that are too many end with QUEUE_FULL; none that waits is dropped', async () => {
+    const { lease, run, clock } = createBench({ onQuery: answering, settings: { queueLimit: 3 } })
+    await clock.advance(1)
+    const write = n => lease.run(() => toy.ask(n), { station: n, priority: WRITE })
+    const accepted = [1, 2, 3, 4].map(write)
+    const error = await failure(write(5))
+    assert.equal(error.code, 'QUEUE_FULL')
+    assert.match(error.message, /the line is full \(3 requests\)/)
+    assert.deepEqual(await run(Promise.all(accepted)), [[1], [2], [3], [4]])
+    assert.equal(lease.line.stats().queueFull, 1)
+  })
+
+  it('that wait longer than their deadline end with DEADLINE and are not sent', async () => {
+    const { lease, run, clock, wire } = createBench()
+    const slow = failure(lease.run(() => toy.ask(1, { timeout: 500 }), { station: 1 }))
+    const start = clock.now()
+    const error = await run(failure(lease.run(() => toy.ask(2), { station: 2, deadline: 100 })))
+    assert.deepEqual([error.code, error.details.sent, clock.now() - start], ['DEADLINE', false, 100])
+    await run(slow)
+    assert.equal(wire.sent.length, 1)
+    wire.onQuery = answering
+    assert.deepEqual(await run(lease.run(() => toy.ask(3), { station: 3, deadline: 100 })), [3])
+    await clock.advance(200)
+    assert.equal(clock.pending(), 0)
+  })
+
+  it('several steps of one conversation are not torn apart', async () => {
+    const { lease, run, wire } = createBench({ onQuery: answering })
+    const two = function* () {
+      yield* toy.ask(1, { nonce: 1 })
+      return yield* toy.ask(1, { nonce: 2 })
+    }
+    const poll = lease.run(two, { station: 1, priority: POLL })
+    const write = lease.run(() => toy.ask(1, { nonce: 3 }), { station: 1, priority: WRITE })
+    await run(Promise.all([poll, write]))
+    assert.deepEqual(
+      wire.sent.map(({ bytes }) => bytes[2]),
+      [3, 1, 2]
+    )
+  })
+})
+
+describe('line: opening, losing, coming back', () => {
+  const notFound = new PlcError('PORT_NOT_FOUND', { path: 'x' })
+
+  it('a request waits for the first opening', async () => {
+    const { lease, run } = createBench({ onQuery: answering })
+    assert.equal(lease.line.state, 'opening')
+    assert.deepEqual(await run(lease.run(() => toy.ask(1), { station: 1 })), [1])
+  })
+
+  it('but no longer than the grace', async () => {
+    const never = () => ({ open: () => {}, write: () => {}, hint: () => {}, close: done => done(), id: () => 'x' })
+    const { lease, run, clock } = createBench({ transports: { simulated: never } })
+    const error = await run(failure(lease.run(() => toy.ask(1), { station: 1 })))
+    assert.equal(error.code, 'LINE_DOWN')
+    assert.equal(clock.now(), 2000)
+    assert.equal((await failure(lease.run(() => toy.ask(1), { station: 1 }))).code, 'LINE_DOWN')
+    await run(lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+
+  it('what waits and what comes ends at once with the reason', async () => {
+    const { lease, run, clock, wire } = createBench()
+    wire.refuse = notFound
+    const states = []
+    lease.on('state', (state, reason) => states.push([state, reason?.code]))
+    const error = await run(failure(lease.run(() => toy.ask(1), { station: 1 })))
+    assert.equal(error.code, 'PORT_NOT_FOUND')
+    assert.equal(error.cause, notFound)
+    assert.equal(error.details.sent, false)
+    assert.equal(clock.now(), 0)
+    assert.equal((await failure(lease.run(() => toy.ask(1), { station: 1 }))).code, 'PORT_NOT_FOUND')
+    assert.deepEqual(states, [['waiting', 'PORT_NOT_FOUND']])
+  })
+
+  it('tries again after 0.25, 0.5, 1, 2, 4, 5, 5 s, with a fresh transport each time', async () => {
+    const times = []
+    const made = []
+    const absent = (_, clock) => {
+      const transport = {
+        open: handlers => {
+          times.push(clock.now())
+          made.push(transport)
+          handlers.failed(notFound)
+        },
+        hint: () => {},
+        close: done => done(),
+        id: () => 'x'
+      }
+      return transport
+    }
+    const { clock, lease, run } = createBench({ transports: { simulated: absent } })
+    await clock.advance(18000)
+    assert.deepEqual(times, [0, 250, 750, 1750, 3750, 7750, 12750, 17750])
+    assert.equal(new Set(made).size, 8)
+    await run(lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+
+  it('varies the delays', async () => {
+    for (const [random, expected] of [
+      [0, 187.5],
+      [0.999999, 312.5]
+    ]) {
+      const { wire, clock } = createBench({ random: () => random })
+      wire.refuse = notFound
+      await clock.advance(expected - 1)
+      wire.refuse = null
+      assert.equal(wire.connects, 0)
+      await clock.advance(1.01)
+      assert.equal(wire.connects, 1)
+    }
+  })
+
+  it('a lost wire ends what is under way, and comes back by itself', async () => {
+    const { lease, run, clock, wire } = createBench()
+    const states = []
+    lease.on('state', (state, reason) => states.push([state, reason?.code]))
+    const asked = [1, 2].map(n => failure(lease.run(() => toy.askAgain(n), { station: n })))
+    await clock.advance(50)
+    wire.unplug()
+    const errors = await run(Promise.all(asked))
+    assert.deepEqual(
+      errors.map(e => [e.code, e.details.sent]),
+      [
+        ['PORT_GONE', true],
+        ['PORT_GONE', false]
+      ]
+    )
+    assert.equal(clock.now(), 50)
+    wire.onQuery = answering
+    await clock.advance(260)
+    assert.deepEqual(await run(lease.run(() => toy.ask(3), { station: 3 })), [3])
+    assert.equal(lease.line.stats().reconnects, 1)
+    assert.deepEqual(states, [
+      ['open', undefined],
+      ['waiting', 'PORT_GONE'],
+      ['open', undefined]
+    ])
+  })
+
+  it('the conversation is told, and may give its own error', async () => {
+    const { lease, run, clock, wire } = createBench()
+    const make = function* () {
+      try {
+        yield* toy.ask(1)
+      } catch (cause) {
+        throw new PlcError('WRITE_UNKNOWN', { station: 1, item: 'M0', reason: cause.code, cause })
+      }
+    }
+    const promise = failure(lease.run(make, { station: 1, priority: WRITE }))
+    await clock.advance(20)
+    wire.unplug()
+    const error = await run(promise)
+    assert.deepEqual([error.code, error.details.reason], ['WRITE_UNKNOWN', 'PORT_GONE'])
+  })
+
+  it('asks the transport after each timeout whether it is still there', async () => {
+    const checks = []
+    const { simulated } = require('../../lib/line/transports/memory')
+    const checking = (settings, clock) => ({ ...simulated(settings, clock), check: silent => checks.push(silent) })
+    const { lease, run, wire } = createBench({ transports: { simulated: checking } })
+    for (const n of [1, 2, 3]) await run(failure(lease.run(() => toy.ask(n), { station: n })))
+    wire.onQuery = answering
+    await run(lease.run(() => toy.ask(4), { station: 4 }))
+    wire.onQuery = () => {}
+    await run(failure(lease.run(() => toy.ask(5), { station: 5 })))
+    assert.deepEqual(checks, [1, 2, 3, 1])
+  })
+
+  it('a transport that goes when it is asked ends the run, which cannot be repeated', async () => {
+    const { simulated } = require('../../lib/line/transports/memory')
+    const going = (settings, clock) => {
+      const transport = simulated(settings, clock)
+      const state = {}
+      return {
+        ...transport,
+        open: handlers => transport.open((state.handlers = handlers)),
+        check: () => state.handlers.closed(new PlcError('PORT_GONE', { path: 'x' }))
+      }
+    }
+    const { lease, run, wire } = createBench({ transports: { simulated: going } })
+    const error = await run(failure(lease.run(() => toy.askAgain(1), { station: 1 })))
+    assert.equal(error.code, 'PORT_GONE')
+    assert.equal(wire.sent.length, 1)
+  })
+})
+
+describe('line: trace', () => {
+  it('keeps the last 200 frames, oldest first', async () => {
+    const { lease, run } = createBench({ onQuery: answering })
+    for (let n = 0; n < 150; n++) await run(lease.run(() => toy.ask(1, { nonce: n }), { station: 1, label: `n${n}` }))
+    const rows = lease.line.trace()
+    assert.equal(rows.length, 200)
+    assert.deepEqual({ ...rows[0], t: 0 }, { t: 0, dir: 'out', station: 1, bytes: '51013284', note: 'n50' })
+    assert.deepEqual({ ...rows[199], t: 0 }, { t: 0, dir: 'in', station: 1, bytes: '4101950101d9', note: '' })
+    assert.ok(rows[199].t > Date.UTC(2024, 0, 1))
+  })
+
+  it('shows what was skipped, stray, damaged, late', async () => {
+    const { lease, run } = createBench({
+      onQuery: (_, wire) => wire.reply(Buffer.from('ff4101000107ff0102', 'hex'))
+    })
+    await run(failure(lease.run(() => toy.ask(1), { station: 1 })))
+    assert.deepEqual(
+      lease.line.trace().map(({ note, bytes }) => `${note} ${bytes}`),
+      [' 51010052', 'skipped ff', 'CRC_ERROR 4101000107ff', 'stray 0102']
+    )
+  })
+})

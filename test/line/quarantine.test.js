@@ -1,0 +1,228 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { createBench, failure } = require('./support/bench')
+const toy = require('./support/toy')
+
+const near = (got, wanted, name) => assert.ok(Math.abs(got - wanted) < 0.01, `${name}: ${got}, wanted ${wanted}`)
+
+/** `answers[station]` = [[ms after the query, data], …] of its first, second, … query; then at once. */
+const stations = answers => {
+  const asked = {}
+  return (bytes, wire) => {
+    const station = bytes[1]
+    asked[station] = (asked[station] ?? 0) + 1
+    const row = answers[station]?.[asked[station] - 1]
+    if (row === null) return
+    const [after, data] = row ?? [5, [100 + asked[station]]]
+    wire.reply(toy.answer(station, data, bytes[2]), { after })
+  }
+}
+
+const ask = ({ lease }, station, options) => lease.run(() => toy.ask(station, options), { station })
+
+describe('line: quarantine', () => {
+  it('a late answer never becomes the value of the next query', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [[350, [66]]] }) })
+    assert.equal((await bench.run(failure(ask(bench, 1)))).code, 'TIMEOUT')
+    assert.deepEqual(await bench.run(ask(bench, 1)), [102])
+  })
+
+  it('lasts max(timeout, 1 s) from the timeout', async () => {
+    for (const [timeout, bound] of [
+      [200, 1000],
+      [3000, 3000]
+    ]) {
+      const bench = createBench({ onQuery: stations({ 1: [null] }) })
+      await bench.run(failure(ask(bench, 1, { timeout })))
+      const failed = bench.clock.now()
+      await bench.run(ask(bench, 1, { timeout }))
+      near(bench.wire.sent[1].at - failed, bound, 'from timeout to the next query')
+    }
+  })
+
+  it('can be set for the line and for a run', async () => {
+    for (const [settings, options] of [
+      [{ latenessBound: 400 }, {}],
+      [{}, { latenessBound: 400 }]
+    ]) {
+      const { lease, run, clock, wire } = createBench({ settings, onQuery: stations({ 1: [null] }) })
+      await run(failure(lease.run(() => toy.ask(1), { station: 1, ...options })))
+      const failed = clock.now()
+      await run(lease.run(() => toy.ask(1), { station: 1, ...options }))
+      near(wire.sent[1].at - failed, 400, 'from timeout to the next query')
+    }
+  })
+
+  it('is the station’s: the others go on', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [null] }) })
+    await bench.run(failure(ask(bench, 1)))
+    const start = bench.clock.now()
+    const waits = ask(bench, 1)
+    for (let i = 0; i < 20; i++) await bench.run(ask(bench, 2))
+    assert.ok(bench.clock.now() - start < 300)
+    assert.equal(bench.lease.line.stats().stations[2].answers, 20)
+    assert.deepEqual(await bench.run(waits), [102])
+    assert.ok(bench.clock.now() - start >= 1000)
+  })
+
+  it('holds back the repeat of a conversation, which then goes on', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [null, null] }) })
+    const promise = bench.lease.run(() => toy.askAgain(1), { station: 1 })
+    const between = ask(bench, 2)
+    await bench.run(between)
+    assert.ok(bench.clock.now() < 300)
+    assert.deepEqual(await bench.run(promise), [103])
+    const [first, , second, third] = bench.wire.sent.map(({ at }) => at)
+    assert.ok(second - first > 1200 && third - second > 1200)
+  })
+
+  it('gives the last failure at once', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [null, null, null] }) })
+    const error = await bench.run(failure(bench.lease.run(() => toy.askAgain(1), { station: 1 })))
+    assert.equal(error.code, 'TIMEOUT')
+    assert.ok(bench.clock.now() < 3 * 205 + 2 * 1000)
+  })
+
+  it('keeps the station for the conversation that waits', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [null] }) })
+    const first = bench.lease.run(() => toy.askAgain(1, { nonce: 1 }), { station: 1, priority: 2 })
+    await bench.clock.advance(300)
+    const write = bench.lease.run(() => toy.ask(1, { nonce: 2 }), { station: 1, priority: 0 })
+    await bench.run(Promise.all([first, write]))
+    assert.deepEqual(
+      bench.wire.sent.map(({ bytes }) => bytes[2]),
+      [1, 1, 2]
+    )
+  })
+
+  it('learns the lateness × 1.5, tells the user, and starts the silence anew', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [[1100, [66]]] }) })
+    const events = []
+    bench.lease.on('event', event => events.push(event))
+    await bench.run(failure(ask(bench, 1)))
+    await bench.run(ask(bench, 1))
+    const [{ since, remedy, bound, ...event }] = events
+    assert.deepEqual(event, { event: 'late', station: 1, lateness: 900, timeout: 200 })
+    near(bound, 1350, 'bound')
+    assert.match(remedy, /900 ms after its 200 ms timeout: raise the timeout/)
+    assert.ok(since > 0)
+    near(
+      bench.wire.sent[1].at - (bench.wire.sent[0].at + 4 / 1.92 + 1100),
+      1350,
+      'from the late answer to the next query'
+    )
+    assert.equal(bench.lease.line.stats().stations[1].late, 1)
+    near(bench.lease.line.memory(1).bound, 1350, 'bound')
+    assert.equal(bench.lease.line.trace().find(row => row.note === 'late').station, 1)
+  })
+
+  it('never learns to wait less', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [[1100, [66]], null, [250, [67]]] }) })
+    for (let i = 0; i < 3; i++) await bench.run(failure(ask(bench, 1)))
+    await bench.run(ask(bench, 1))
+    near(bench.lease.line.memory(1).bound, 1350, 'bound')
+  })
+
+  it('sees a late answer between the frames of another station', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [[400, [66]]], 2: [[205, [67]]] }) })
+    await bench.run(failure(ask(bench, 1)))
+    assert.deepEqual(await bench.run(ask(bench, 2, { timeout: 1000 })), [67])
+    assert.equal(bench.lease.line.stats().stations[1].late, 1)
+  })
+
+  it('sees the rest of an answer that was given up as incomplete', async () => {
+    const bench = createBench({
+      onQuery: (bytes, wire, n) => {
+        const frame = toy.answer(1, [n, n, n])
+        wire.reply(frame.subarray(0, 6), { after: 5 })
+        wire.reply(frame.subarray(6), { after: n === 1 ? 300 : 6 })
+      }
+    })
+    assert.equal((await bench.run(failure(ask(bench, 1)))).code, 'INCOMPLETE')
+    assert.deepEqual(await bench.run(ask(bench, 1)), [2, 2, 2])
+    assert.equal(bench.lease.line.stats().late, 1)
+  })
+
+  it('is not fooled by a duplicate in the same chunk', async () => {
+    const twice = n => Buffer.concat([toy.answer(1, [n]), toy.answer(1, [n])])
+    const bench = createBench({ onQuery: (bytes, wire, n) => n > 1 && wire.reply(twice(n)) })
+    await bench.run(failure(ask(bench, 1)))
+    assert.deepEqual(await bench.run(ask(bench, 1)), [2])
+    assert.equal(bench.lease.line.stats().late, 0)
+    assert.equal(bench.lease.line.stats().strayBytes, 6)
+  })
+
+  it('is not fooled by a duplicate: it teaches no lateness', async () => {
+    const bench = createBench({
+      onQuery: (bytes, wire, n) => {
+        if (n === 1) return
+        wire.reply(toy.answer(1, [n]), { after: 5 })
+        wire.reply(toy.answer(1, [n]), { after: 40 })
+      }
+    })
+    await bench.run(failure(ask(bench, 1)))
+    assert.deepEqual(await bench.run(ask(bench, 1)), [2])
+    await bench.clock.advance(100)
+    assert.equal(bench.lease.line.stats().late, 0)
+    assert.equal(bench.lease.line.memory(1).bound, 1000)
+  })
+
+  it('does not follow a damaged frame of full length: only the gap', async () => {
+    const bench = createBench({
+      onQuery: (bytes, wire, n) => {
+        const frame = Buffer.from(toy.answer(1, [n]))
+        if (n === 1) frame[4] ^= 1
+        wire.reply(frame)
+      }
+    })
+    assert.deepEqual(await bench.run(bench.lease.run(() => toy.askAgain(1), { station: 1 })), [2])
+    assert.ok(bench.clock.now() < 30)
+  })
+
+  it('follows an opening of the port, for stations that were asked before only', async () => {
+    const bench = createBench({ onQuery: stations({}) })
+    await bench.run(ask(bench, 1))
+    bench.wire.unplug()
+    await bench.clock.advance(300)
+    assert.equal(bench.lease.line.state, 'open')
+    const start = bench.clock.now()
+    await bench.run(ask(bench, 2))
+    assert.ok(bench.clock.now() - start < 20)
+    await bench.run(ask(bench, 1))
+    assert.ok(bench.clock.now() - start > 900)
+  })
+
+  it('follows a run that was given up, until its answer has come', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [[400, [66]]] }) })
+    const other = bench.open({}, 'other')
+    const gone = failure(ask(bench, 1, { timeout: 1000 }))
+    await bench.clock.advance(50)
+    await bench.lease.release()
+    assert.equal((await gone).details.sent, true)
+    assert.deepEqual(await bench.run(other.run(() => toy.ask(1), { station: 1 })), [102])
+    // its answer came in time: nothing else can come
+    near(bench.wire.sent[1].at - bench.wire.sent[0].at, 4 / 1.92 + 400 + 3.5 / 1.92, 'from query to query')
+    assert.equal(other.line.stats().late, 0)
+  })
+
+  it('lives with the wire: the bound survives a redeploy', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [[1100, [66]]] }) })
+    await bench.run(failure(ask(bench, 1)))
+    await bench.clock.advance(1000)
+    await bench.run(bench.lease.release())
+    const again = bench.open()
+    near(again.line.memory(1).bound, 1350, 'bound')
+    const start = bench.clock.now()
+    await bench.run(again.run(() => toy.ask(1), { station: 1 }))
+    near(bench.wire.sent[1].at - start, 1350, 'from opening to the first query')
+  })
+
+  it('bounds what it keeps', async () => {
+    const bench = createBench({ onQuery: () => {} })
+    for (let n = 0; n < 60; n++) await bench.run(failure(ask(bench, n, { timeout: 10 })))
+    for (let i = 0; i < 200; i++) bench.wire.handlers.data(Buffer.alloc(500, 0x41))
+    bench.wire.onQuery = stations({})
+    assert.deepEqual(await bench.run(ask(bench, 100)), [101])
+  })
+})

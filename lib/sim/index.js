@@ -1,0 +1,13 @@
+'use strict'
+
+/** The door of the simulator: stations, faulty wires, virtual time, and ways to offer them to real programs. */
+module.exports = {
+  ...require('./clock'),
+  ...require('./random'),
+  ...require('./nx-plc'),
+  ...require('./nx-line'),
+  ...require('./wire'),
+  ...require('./faults'),
+  ...require('./pty'),
+  ...require('./serve')
+}

@@ -177,7 +177,12 @@ const CODES = Object.freeze({
 
 const shown = value => {
   if (value === undefined) return '?'
-  return typeof value === 'string' ? value : (JSON.stringify(value) ?? String(value))
+  if (typeof value === 'string') return value
+  try {
+    return JSON.stringify(value) ?? String(value)
+  } catch {
+    return typeof value // BigInt, or an object that contains itself: an error's text must not fail
+  }
 }
 
 const fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]).slice(0, 200))

@@ -108,7 +108,9 @@ function prepare(query, options) {
   delete facts.master
   delete facts.seenStation
   const ids = options.ids ?? masterIds({ ids: DEFAULT_IDS })
+  const reached = /** @type {'nothing'|'query'|'answer'} */ ('nothing')
   return {
+    reached,
     query,
     station,
     steps,

@@ -220,6 +220,8 @@ describe('NX queries: limits', () => {
   })
 
   it('hostile queries have a code', () => {
+    const circular = {}
+    circular.self = circular
     const hostile = [
       [undefined, 'FUNCTION_REFUSED'],
       [null, 'FUNCTION_REFUSED'],
@@ -228,6 +230,8 @@ describe('NX queries: limits', () => {
       [{ ask: 'readWords', base: 0 }, 'BAD_COUNT'],
       [{ ask: 'readWords', base: 0, count: '2' }, 'BAD_COUNT'],
       [{ ask: 'readWords', base: 0, count: NaN }, 'BAD_COUNT'],
+      [{ ask: 'readWords', base: 0, count: 2n }, 'BAD_COUNT'],
+      [{ ask: 'readWords', base: 0, count: circular }, 'BAD_COUNT'],
       [{ ask: 'writeWords', base: 0 }, 'BAD_COUNT'],
       [{ ask: 'writeWords', base: 0, values: 'ab' }, 'BAD_COUNT'],
       [{ ask: 'writeWords', base: 0, values: { length: 1e9 } }, 'BAD_COUNT'],

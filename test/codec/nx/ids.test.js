@@ -1,0 +1,87 @@
+'use strict'
+const assert = require('node:assert/strict')
+const { masterIdList, masterIds, DEFAULT_IDS } = require('../../../lib/codec/nx/ids')
+
+describe('NX master IDs: the setting', () => {
+  it('takes a number, a list, a range', () => {
+    assert.deepEqual([...masterIdList(undefined)], [0xe2, 0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe9])
+    assert.equal(masterIdList(''), DEFAULT_IDS)
+    assert.deepEqual([...masterIdList(226)], [226])
+    assert.deepEqual([...masterIdList('226')], [226])
+    assert.deepEqual([...masterIdList('$E2..$E4')], [226, 227, 228])
+    assert.deepEqual([...masterIdList('0xe2 .. 0xe4, 192, 226')], [226, 227, 228, 192])
+    assert.deepEqual([...masterIdList([254, 192])], [254, 192])
+  })
+
+  it('takes a number of a station only if no station has it', () => {
+    assert.deepEqual([...masterIdList('191', { stations: [1, 2] })], [191])
+    assert.throws(() => masterIdList('2', { stations: [1, 2] }), { code: 'BAD_MASTER_ID' })
+    assert.throws(() => masterIdList('191', { stations: [255] }), { code: 'BAD_MASTER_ID' })
+    assert.deepEqual([...masterIdList('192', { stations: [255] })], [192])
+  })
+
+  it('refuses the rest', () => {
+    for (const bad of [
+      255,
+      256,
+      -1,
+      1.5,
+      NaN,
+      '255',
+      'x',
+      '226..',
+      '..',
+      '228..226',
+      '1..2..3',
+      '0..999999999',
+      [],
+      [null],
+      {},
+      true
+    ]) {
+      assert.throws(() => masterIdList(bad), { code: 'BAD_MASTER_ID' }, String(bad))
+    }
+  })
+})
+
+describe('NX master IDs: the allocator', () => {
+  const ids = [1, 2, 3].map(n => 223 + n)
+  it('gives each query another one, in turn', () => {
+    const all = masterIds({ ids, start: 4 })
+    assert.deepEqual([all.take(), all.take(), all.take(), all.take()], [225, 226, 224, 225])
+  })
+
+  it('lets a failed one rest until it is freed', () => {
+    const all = masterIds({ ids })
+    all.failed(all.take())
+    assert.deepEqual(all.resting(), [224])
+    assert.deepEqual([all.take(), all.take(), all.take()], [225, 226, 225])
+    all.free(224)
+    assert.deepEqual([all.take(), all.take()], [226, 224])
+  })
+
+  it('uses the one that has rested longest if all rest', () => {
+    const all = masterIds({ ids })
+    for (let i = 0; i < 3; i++) all.failed(all.take())
+    assert.equal(all.take(), 224)
+    all.ok(224)
+    assert.deepEqual(all.resting(), [225, 226])
+    all.free()
+    assert.deepEqual(all.resting(), [])
+  })
+
+  it('a single one never rests', () => {
+    const all = masterIds({ ids: [226] })
+    all.failed(all.take())
+    assert.deepEqual([all.take(), all.resting()], [226, []])
+  })
+
+  it('goes on after a redeploy where it was, also with other IDs', () => {
+    const memory = {}
+    const before = masterIds({ ids, memory })
+    before.failed(before.take())
+    const after = masterIds({ ids, start: 0, memory: JSON.parse(JSON.stringify(memory)) })
+    assert.deepEqual([after.take(), after.take(), after.take()], [225, 226, 225])
+    assert.equal(masterIds({ ids: [200, 201], start: 1, memory: { ...memory } }).take(), 201)
+  })
+})

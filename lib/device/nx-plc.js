@@ -1,0 +1,219 @@
+'use strict'
+const { PlcError } = require('../error')
+const { describeAddress } = require('../codec/nx/address')
+const { PRIORITY, realClock } = require('../line')
+const { distinctNames, parseItem, splitType } = require('../tag/item')
+const { pointsOf, resultsOf } = require('./points')
+const { Reader } = require('./reader')
+const { readSettings } = require('./settings')
+const { Subscription } = require('./subscription')
+const { Talk } = require('./talk')
+const { Writer } = require('./writer')
+
+const MOST_ITEMS = 1000
+
+/** One OE MAX NX PLC on a line. Made by {@link createNxPlc}. */
+class NxPlc {
+  #settings
+  #clock
+  #random
+  #talk
+  #reader
+  #writer
+  #subscriptions = new Set()
+  #known = new Map()
+  #closed = false
+
+  /** @param {Record<string, any>} options of {@link createNxPlc} */
+  constructor({ lease, clock = realClock, random = Math.random, ...given }) {
+    const settings = readSettings(given, lease.line.times?.character ?? 0.52)
+    this.#settings = settings
+    this.#clock = clock
+    this.#random = random
+    this.#talk = new Talk({ lease, settings, random })
+    this.#reader = new Reader({ talk: this.#talk, settings, clock })
+    const parse = text => this.item(text)
+    this.#writer = new Writer({ talk: this.#talk, reader: this.#reader, clock, settings, parse })
+  }
+
+  get name() {
+    return this.#settings.name
+  }
+
+  get station() {
+    return this.#settings.station
+  }
+
+  /** `read` or `write`: whether writing is allowed at all. */
+  get access() {
+    return this.#settings.access
+  }
+
+  /** Counters: `{ requests, answers, nonStandardAcks, repeats, seenStation, overruns, subscriptions }`. */
+  get stats() {
+    const overruns = [...this.#subscriptions].reduce((sum, subscription) => sum + subscription.overruns, 0)
+    return { ...this.#talk.counts, overruns, subscriptions: this.#subscriptions.size }
+  }
+
+  /**
+   * An item of this PLC: a tag's name or an address expression.
+   * @param {unknown} text `M0`, `K127.12`, `W10:float32`, `M0..M127`, `boiler_temp`
+   * @returns {import('../tag/item').Item}
+   * @throws {PlcError} BAD_ITEMS, BAD_ADDRESS, UNKNOWN_AREA, OUT_OF_AREA, BAD_BIT, BAD_COUNT, BAD_TYPE
+   */
+  item(text) {
+    const known = typeof text === 'string' ? this.#known.get(text) : undefined
+    if (known) return known
+    const item = parseItem(text, this.#settings.notation)
+    if (this.#known.size > 10 * MOST_ITEMS) this.#known.clear()
+    this.#known.set(item.text, item)
+    return item
+  }
+
+  /**
+   * What goes out for an item, in one line, for dialogs.
+   * @param {unknown} text
+   * @param {{ write?: boolean }} [options]
+   * @returns {{ name: string, type: string, goesOut: string, certainty: string, writable: boolean }} `function 23, word
+   *   addresses 020Ah–020Bh (522–523)`
+   * @throws {PlcError} as {@link NxPlc.item}
+   */
+  describe(text, { write = false } = {}) {
+    const { notation, steps } = this.#settings
+    const item = this.item(text)
+    const address = /** @type {any} */ (notation.parse(splitType(item.tag ? item.tag.address : item.text.trim())[0]))
+    const whole = { ...address, count: item.count * item.type.words }
+    const goesOut = describeAddress(whole, { steps, write })
+    return { name: item.name, type: item.type.name, goesOut, certainty: address.certainty, writable: address.writable }
+  }
+
+  /**
+   * Checks a write without sending anything: for a target that is fixed in a node, at deploy.
+   * @param {unknown} text
+   * @param {{ fixed?: boolean }} [options]
+   * @returns {import('../tag/item').Item}
+   * @throws {PlcError} READ_ONLY, NOT_WRITABLE, and those of {@link NxPlc.item}
+   */
+  checkTarget(text, { fixed = true } = {}) {
+    const item = this.item(text)
+    this.#writer.checkTarget(item, { fixed })
+    return item
+  }
+
+  /**
+   * Items with names that differ.
+   * @param {unknown} items array of texts
+   * @returns {import('../tag/item').Item[]}
+   * @throws {PlcError} BAD_ITEMS, TOO_MANY, and those of {@link NxPlc.item}
+   */
+  items(items) {
+    if (!Array.isArray(items)) throw new PlcError('BAD_ITEMS', { reason: 'it is no array' })
+    if (items.length === 0) throw new PlcError('BAD_ITEMS', { reason: 'it is empty' })
+    if (items.length > MOST_ITEMS)
+      throw new PlcError('TOO_MANY', { count: items.length, unit: 'items', most: MOST_ITEMS })
+    return distinctNames(Array.from(items, text => this.item(text)))
+  }
+
+  /**
+   * Reads any mix of items.
+   * @param {unknown} items array of texts, at most 1000 and 20,000 addresses
+   * @param {{ priority?: number }} [options] PRIORITY.ASK (default) or PRIORITY.POLL; a poll leaves addresses that the PLC
+   *   said it does not have alone for 30 s
+   * @returns {Promise<import('./points').Result[]>} one per item, in order; what went wrong stands in the results
+   * @throws {PlcError} (rejects) only for what is wrong with the request: BAD_ITEMS, TOO_MANY, FRAME_TOO_LONG, and those of
+   *   {@link NxPlc.item}
+   */
+  async read(items, { priority = PRIORITY.ASK } = {}) {
+    const parsed = this.items(items)
+    const fresh = priority !== PRIORITY.POLL
+    return resultsOf(parsed, await this.#reader.read(pointsOf(parsed), { priority, fresh }))
+  }
+
+  /**
+   * Writes values; all are checked before the first is sent.
+   * @param {{ item: string, value: any }[]} entries at most 1000
+   * @param {object} [options]
+   * @param {boolean} [options.fixed] the targets were fixed by the flow's author, not by a message
+   * @param {boolean} [options.verify] read back; decides also what an unanswered write has become
+   * @param {boolean} [options.coalesce] a write of the same items that still waits is replaced (its outcome: SUPERSEDED)
+   * @returns {Promise<import('./outcome').Outcome>} never rejects
+   */
+  write(entries, { fixed = false, verify = false, coalesce = false } = {}) {
+    return this.#writer.write(entries, { fixed, verify, coalesce })
+  }
+
+  /**
+   * Polls items.
+   * @param {{ items: any[], interval: number, immediately?: boolean }} group interval in ms, 10 to a day; `immediately`
+   *   (default): the first cycle at once
+   * @param {(results: import('./points').Result[], cycle: import('./subscription').Cycle) => void} callback per cycle
+   * @returns {{ stop: () => void, setItems: (items: any[]) => void, readonly overruns: number }}
+   * @throws {PlcError} BAD_SETTING, LINE_CLOSED, and those of {@link NxPlc.items}
+   */
+  subscribe({ items, interval, immediately = true }, callback) {
+    if (this.#closed) throw new PlcError('LINE_CLOSED', { line: this.name })
+    this.items(items)
+    const subscription = new Subscription({
+      plc: this,
+      clock: this.#clock,
+      random: this.#random,
+      items,
+      interval,
+      immediately,
+      callback
+    })
+    this.#subscriptions.add(subscription)
+    return {
+      stop: () => {
+        subscription.stop()
+        this.#subscriptions.delete(subscription)
+      },
+      setItems: next => {
+        this.items(next)
+        subscription.setItems(next)
+      },
+      get overruns() {
+        return subscription.overruns
+      }
+    }
+  }
+
+  /** Ends its subscriptions. The lease is its owner's to release: that ends what still waits. Any number of times. */
+  close() {
+    this.#closed = true
+    for (const subscription of this.#subscriptions) subscription.stop()
+    this.#subscriptions.clear()
+    this.#talk.close()
+  }
+}
+
+/**
+ * One OE MAX NX PLC on a line.
+ *
+ * @param {object} options
+ * @param {any} options.lease of the line, from `pool.open`
+ * @param {number|string} options.station 0..191, or 255 for the only PLC of a line
+ * @param {string} [options.name]
+ * @param {2|4|'2'|'4'} [options.steps] default 2
+ * @param {number} [options.timeout] ms to the first byte of the answer, default 3000
+ * @param {number} [options.attempts] of a read, default 3; a write has one
+ * @param {number} [options.gap] ms of silence before each frame, default 10
+ * @param {any} [options.masterIds] default $E2..$E9, see `masterIdList`
+ * @param {number[]} [options.stations] numbers of the line's other stations, which no master ID may have
+ * @param {boolean} [options.soleMaster] the line has no other master: polls may be repeated by an RR alone
+ * @param {any[]} [options.areas] rows that replace or add areas, see `areaMap`
+ * @param {any[]} [options.tags] see `readTags`
+ * @param {'low'|'high'} [options.wordOrder] of 32-bit values, default low word first
+ * @param {'low'|'high'} [options.byteOrder] of strings, default low byte first
+ * @param {'read'|'write'} [options.access] default read
+ * @param {string|string[]} [options.writableRanges] `K0..K63, M10`: what a message may write to beside writable tags
+ * @param {Record<string, number>} [options.limits] per frame, see `limitsOf`
+ * @param {number} [options.deadline] ms that a request may wait for its turn, default no limit
+ * @param {any} [options.clock]
+ * @param {() => number} [options.random] 0 to 1
+ * @returns {NxPlc}
+ * @throws {PlcError} BAD_STATION, BAD_MASTER_ID, BAD_SETTING, BAD_AREA, BAD_TAG, BAD_ADDRESS and its like
+ */
+const createNxPlc = options => new NxPlc(options)
+
+module.exports = { NxPlc, createNxPlc }

@@ -1,0 +1,75 @@
+'use strict'
+const { asPlcError } = require('./talk')
+
+/**
+ * What became of a write. Pure.
+ *
+ * @typedef {'confirmed'|'unknown'|'refused'|'failed'} Word confirmed: the station acknowledged it (and it reads so, with
+ *   `verify`); unknown: it went out and no answer says whether it was carried out; refused: by a guard before anything was
+ *   sent, or by the station; failed: it never went out, or reads otherwise
+ * @typedef {object} ItemOutcome
+ * @property {string} item as the user wrote it
+ * @property {string} name
+ * @property {any} value as it was given
+ * @property {Word|'notSent'} outcome
+ * @property {string} [code]
+ * @property {string} [text]
+ * @typedef {object} Outcome
+ * @property {Word} outcome of the whole: unknown if any item is, else confirmed only if all are
+ * @property {ItemOutcome[]} items in the order of the entries
+ * @property {string} [code]
+ * @property {string} [text]
+ * @property {number} attempts requests that went out for it
+ * @property {number} ms from the call to the outcome
+ */
+
+const plain = ({ item, value }) => ({ item: item?.text ?? String(item), name: item?.name ?? String(item), value })
+
+/**
+ * Nothing was sent.
+ * @param {any} error
+ * @param {{ item: any, value: any }[]} entries
+ * @param {'refused'|'failed'} outcome
+ * @returns {Outcome}
+ */
+const unsent = (error, entries, outcome = 'refused') => {
+  const { code, message: text } = asPlcError(error)
+  return {
+    outcome,
+    items: entries.map(entry => ({ ...plain(entry), outcome: 'notSent' })),
+    code,
+    text,
+    attempts: 0,
+    ms: 0
+  }
+}
+
+/** @param {import('../error').PlcError} error @returns {Word} what a failed request means */
+const wordFor = error => {
+  if (error.code === 'WRITE_UNKNOWN') return 'unknown'
+  return error.code.startsWith('PLC_') ? 'refused' : 'failed'
+}
+
+/** The worst that an item's values met. */
+const WORST = ['unknown', 'failed', 'refused', 'notSent', 'confirmed']
+
+/**
+ * @param {{ item: any, value: any, from: number, to: number }[]} entries with the places of their points
+ * @param {{ outcome: string, error?: import('../error').PlcError }[]} points
+ * @returns {Outcome}
+ */
+const outcomeOf = (entries, points) => {
+  const items = entries.map(entry => {
+    const own = points.slice(entry.from, entry.to)
+    const worst = /** @type {any} */ (WORST.find(word => own.some(({ outcome }) => outcome === word)))
+    const error = own.find(({ outcome }) => outcome === worst)?.error
+    const why = error ? { code: error.code, text: error.message } : {}
+    return { ...plain(entry), outcome: worst, ...why }
+  })
+  const first = WORST.map(word => items.find(({ outcome }) => outcome === word)).find(Boolean)
+  const { outcome, code, text } = /** @type {any} */ (first)
+  // what was not sent was not sent because of another item: that one's word stands for the whole
+  return { outcome, items, ...(code ? { code, text } : {}), attempts: 0, ms: 0 }
+}
+
+module.exports = { outcomeOf, unsent, wordFor }

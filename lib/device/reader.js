@@ -1,0 +1,182 @@
+'use strict'
+const { PlcError } = require('../error')
+const { planReads } = require('../plan')
+const { asPlcError, isStationFailure } = require('./talk')
+
+/**
+ * Reads points, whatever some of them do: a request that fails spoils only its own points, an address that the PLC does
+ * not have names itself, and a silent station is not waited for again and again.
+ */
+
+const REST = 30000 // ms that an address stays out of the joint polls after the PLC said that it does not have it
+const MOST_SPLITS = 64 // requests that one read may spend on finding bad addresses
+const BROKEN = new Set(['CRC_ERROR', 'INCOMPLETE', 'BAD_ANSWER'])
+
+const keyOf = point => `${point.kind} ${point.address} ${point.count}`
+
+/** The point's own word for error 2, instead of the request's first address. */
+const named = (error, point, station) =>
+  error.code === 'PLC_OUT_OF_RANGE'
+    ? new PlcError('PLC_OUT_OF_RANGE', { station, address: point.text, cause: error })
+    : error
+
+const SPLITS = new Set(['PLC_OUT_OF_RANGE', 'PLC_FRAME_TOO_LONG'])
+const UNKNOWN_FUNCTION = new Set(['PLC_WRONG_FUNCTION', 'PLC_NO_SERVICE'])
+
+/**
+ * @typedef {{ kind: 'bit'|'word', address: number, count: number, text: string }} Point
+ * @typedef {object} Job one read
+ * @property {Point[]} points
+ * @property {number} priority
+ * @property {any[]} readings one per point, filled in as they come
+ * @property {number} splits requests spent on finding bad addresses
+ */
+
+class Reader {
+  #talk
+  #clock
+  #station
+  #limits
+  /** Addresses that the PLC refused: key -> { error, until }. */
+  #absent = new Map()
+
+  /** @param {{ talk: any, settings: any, clock: any }} options */
+  constructor({ talk, settings, clock }) {
+    this.#talk = talk
+    this.#clock = clock
+    this.#station = settings.station
+    this.#limits = settings.planLimits
+  }
+
+  /**
+   * @param {Point[]} points
+   * @param {{ priority: number, fresh: boolean }} options fresh: ask also for addresses that the PLC refused lately
+   * @returns {Promise<import('./points').Reading[]>} one per point
+   * @throws {PlcError} FRAME_TOO_LONG one value does not fit into one request
+   */
+  async read(points, { priority, fresh }) {
+    /** @type {Job} */
+    const job = { points, priority, readings: new Array(points.length), splits: 0 }
+    const { joint, due, resting } = this.#groups(points, fresh)
+    for (const index of resting) this.#fail([index], this.#absent.get(keyOf(points[index])).error, job)
+    // known absent addresses are asked for apart, so that they do not spoil the others' request again
+    const alone = distinct(due, points).map(key => due.filter(index => keyOf(points[index]) === key))
+    await this.#run(this.#requests([joint, ...alone], job), job)
+    return job.readings
+  }
+
+  #groups(points, fresh) {
+    const joint = []
+    const due = []
+    const resting = []
+    points.forEach((point, index) => {
+      const known = this.#absent.get(keyOf(point))
+      if (!known) joint.push(index)
+      else if (fresh || known.until <= this.#clock.now()) due.push(index)
+      else resting.push(index)
+    })
+    return { joint, due, resting }
+  }
+
+  #requests(parts, job) {
+    return parts.flatMap(part => plan(part, job.points, this.#limits))
+  }
+
+  /**
+   * Requests one after the other; ends early if the station is silent or the line is down.
+   * @returns {Promise<PlcError|null>} why it ended early
+   */
+  async #run(requests, job) {
+    let answered = false
+    for (let next = 0; next < requests.length; next++) {
+      const indexes = requests[next].points.map(({ point }) => point)
+      const refused = await this.#attempt(requests[next], job)
+      const error = refused && (await this.#settle(refused, requests[next], job))
+      if (error) this.#fail(indexes, error, job)
+      if (!error || !isStationFailure(error) || BROKEN.has(error.code)) answered = true
+      // after an answer one silence may be that request's own fault; a second one is the station's
+      else if (answered && error.code === 'TIMEOUT') answered = false
+      else return this.#failRest(requests.slice(next + 1), error, job)
+    }
+    return null
+  }
+
+  /** One request; its points get their readings. @returns {Promise<PlcError|null>} */
+  async #attempt(request, job) {
+    try {
+      const answer = await this.#talk.read(request, job)
+      const at = this.#clock.wall()
+      for (const { point, at: place, count } of request.points) {
+        job.readings[point] = { raw: answer.slice(place, place + count), at }
+        this.#absent.delete(keyOf(job.points[point]))
+      }
+      return null
+    } catch (caught) {
+      return asPlcError(caught, this.#station)
+    }
+  }
+
+  /** What another plan can mend. @returns {Promise<PlcError|null>} what is left of the error */
+  async #settle(error, request, job) {
+    const indexes = request.points.map(({ point }) => point)
+    if (SPLITS.has(error.code)) return this.#split(indexes, error, job)
+    if (request.ask === 'readMixed' && UNKNOWN_FUNCTION.has(error.code)) {
+      this.#limits = { ...this.#limits, readMixed: 0 }
+      return this.#run(this.#requests([indexes], job), job)
+    }
+    return error
+  }
+
+  /** Error 2 names no address: halve until the bad ones stand alone. @returns {Promise<PlcError|null>} */
+  async #split(indexes, error, job) {
+    const [first, second] = distinct(indexes, job.points)
+    if (second === undefined) return this.#refused(first, named(error, job.points[indexes[0]], this.#station))
+    if (job.splits >= MOST_SPLITS) return error
+    job.splits += 2
+    const sorted = [...indexes].sort((a, b) => order(job.points[a], job.points[b]))
+    const middle = cutAt(sorted, sorted.length >> 1, job.points)
+    return this.#run(this.#requests([sorted.slice(0, middle), sorted.slice(middle)], job), job)
+  }
+
+  #refused(key, error) {
+    if (error.code === 'PLC_OUT_OF_RANGE') this.#absent.set(key, { error, until: this.#clock.now() + REST })
+    return error
+  }
+
+  #fail(indexes, error, job) {
+    const at = this.#clock.wall()
+    for (const index of indexes) job.readings[index] ??= { error, at }
+  }
+
+  #failRest(requests, error, job) {
+    for (const { points } of requests) {
+      this.#fail(
+        points.map(({ point }) => point),
+        error,
+        job
+      )
+    }
+    return error
+  }
+}
+
+const order = (a, b) => a.kind.localeCompare(b.kind) || a.address - b.address || a.count - b.count
+
+const distinct = (indexes, points) => [...new Set(indexes.map(index => keyOf(points[index])))]
+
+/** A place to cut that leaves equal points together and neither half empty. */
+const cutAt = (sorted, middle, points) => {
+  const key = keyOf(points[sorted[middle]])
+  const first = sorted.findIndex(index => keyOf(points[index]) === key)
+  if (first > 0) return first
+  return sorted.findIndex(index => keyOf(points[index]) !== key)
+}
+
+/** A plan for some of the points, with their places in the whole. */
+const plan = (indexes, points, limits) =>
+  planReads(
+    indexes.map(index => points[index]),
+    limits
+  ).map(request => ({ ...request, points: request.points.map(each => ({ ...each, point: indexes[each.point] })) }))
+
+module.exports = { Reader }

@@ -1,0 +1,107 @@
+'use strict'
+const { PlcError } = require('../error')
+const { masterIdList } = require('../codec/nx/ids')
+const { limitsOf } = require('../codec/nx/limits')
+const { nxNotation } = require('../tag/nx-notation')
+
+/** The configuration of an NX PLC, read and checked before anything is sent. */
+
+const LAST_STATION = 191
+const ANY_STATION = 255
+const GAP = 10 // ms: what the manual's own program waits before each Q and RR
+
+const blank = value => value === undefined || value === null || (typeof value === 'string' && value.trim() === '')
+
+const wholeNumber = (setting, value, { fallback, least, most }) => {
+  if (blank(value)) return fallback
+  const number = typeof value === 'string' ? Number(value) : value
+  if (Number.isInteger(number) && number >= least && number <= most) return number
+  throw new PlcError('BAD_SETTING', { setting, value, reason: `a whole number from ${least} to ${most} is needed` })
+}
+
+const choice = (setting, value, known) => {
+  if (blank(value)) return known[0]
+  const found = known.find(each => String(each) === String(value).trim())
+  if (found !== undefined) return found
+  throw new PlcError('BAD_SETTING', { setting, value, reason: `known are ${known.join(', ')}` })
+}
+
+/**
+ * @param {unknown} value
+ * @returns {number} 0..191, or 255 for the only PLC of a line
+ * @throws {PlcError} BAD_STATION
+ */
+const readStation = value => {
+  const number = typeof value === 'string' && /^\s*\d{1,3}\s*$/.test(value) ? Number(value) : value
+  if (typeof number !== 'number' || !Number.isInteger(number) || number < 0 || number > 255) {
+    throw new PlcError('BAD_STATION', {
+      station: value,
+      reason: 'it must be 0 to 191, or 255 for the only PLC of a line'
+    })
+  }
+  if (number > LAST_STATION && number !== ANY_STATION) {
+    throw new PlcError('BAD_STATION', { station: number, reason: '192 to 254 are numbers of masters' })
+  }
+  return number
+}
+
+// `E2..E9` as hex without a mark: a number with a letter cannot be decimal
+const markHex = value =>
+  typeof value === 'string' ? value.replace(/(?<![$\w])(?=\d?[a-f])[\da-f]{2}(?!\w)/gi, '0x$&') : value
+
+/** Absolute word addresses at which an area begins or ends. */
+const boundsOf = areas => areas.list.flatMap(({ base, words }) => [base, base + words])
+
+/** What one more request costs beside its INFO, in byte times: heads and CRC of the frames, gaps, the station's time. */
+const frameCost = ({ steps, gap, character }) => {
+  const frames = steps === 4 ? 26 : 12
+  const silence = (steps === 4 ? 2 * gap + 10 : gap + 5) / character
+  return Math.round(frames + silence)
+}
+
+/** Spans of absolute bits that a message may write to. */
+const readRanges = (value, notation) => {
+  const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(',')
+  return given
+    .map(text => String(text).trim())
+    .filter(text => text !== '')
+    .map(text => {
+      const { kind, address, count } = notation.parse(text)
+      const size = kind === 'word' ? 16 : 1
+      return { start: address * size, end: (address + count) * size }
+    })
+}
+
+/**
+ * @param {Record<string, any>} given see `createNxPlc`
+ * @param {number} character ms that one character takes on the line
+ * @throws {PlcError} BAD_STATION, BAD_MASTER_ID, BAD_SETTING, BAD_AREA, BAD_TAG, BAD_ADDRESS and its like for the ranges
+ */
+const readSettings = (given, character) => {
+  const station = readStation(given.station)
+  const steps = /** @type {2|4} */ (choice('steps', given.steps, [2, 4]))
+  const gap = wholeNumber('gap', given.gap, { fallback: GAP, least: 0, most: 10000 }) || GAP
+  const wordOrder = choice('wordOrder', given.wordOrder, ['low', 'high'])
+  const byteOrder = choice('byteOrder', given.byteOrder, ['low', 'high'])
+  const notation = nxNotation({ areas: given.areas || [], tags: given.tags, wordOrder, byteOrder })
+  const stations = [...(given.stations ?? []), station]
+  const limits = limitsOf(given.limits)
+  return {
+    station,
+    steps,
+    gap,
+    name: blank(given.name) ? `station ${station}` : String(given.name).trim(),
+    timeout: wholeNumber('timeout', given.timeout, { fallback: 3000, least: 10, most: 600000 }),
+    attempts: wholeNumber('attempts', given.attempts, { fallback: 3, least: 1, most: 20 }),
+    masterIds: masterIdList(markHex(given.masterIds), { stations }),
+    soleMaster: given.soleMaster === true || given.soleMaster === 'true',
+    access: choice('access', given.access, ['read', 'write']),
+    ranges: readRanges(given.writableRanges, notation),
+    deadline: wholeNumber('deadline', given.deadline, { fallback: 0, least: 0, most: 3600000 }),
+    notation,
+    limits,
+    planLimits: { ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) }
+  }
+}
+
+module.exports = { readSettings, readStation }

@@ -1,0 +1,133 @@
+'use strict'
+const { PlcError } = require('../error')
+const { masterIds } = require('../codec/nx/ids')
+const { readDialog, writeDialog } = require('../codec/nx/dialog')
+
+/**
+ * One query of an NX station over the line: the master's ID, the repeat by RR, and what is remembered about the station.
+ * What must survive a redeploy lies in the line's memory of the station.
+ */
+
+const memoryOf = (lease, station) => {
+  const memory = lease.line.memory(station)
+  memory.nx ??= { ids: {}, lastRead: null, openBitWrite: false }
+  return memory.nx
+}
+
+class Talk {
+  #lease
+  #settings
+  #memory
+  #ids
+  #counts = { requests: 0, answers: 0, nonStandardAcks: 0, repeats: 0, seenStation: /** @type {number|null} */ (null) }
+  // a repeat by RR has no ID of its own that tells late from right, so whatever disturbs the line ends it
+  #forget = () => void (this.#memory.lastRead = null)
+
+  /** @param {{ lease: any, settings: any, random: () => number }} options random: 0 to 1, for the first master ID */
+  constructor({ lease, settings, random }) {
+    this.#lease = lease
+    this.#settings = settings
+    this.#memory = memoryOf(lease, settings.station)
+    const { masterIds: ids } = settings
+    this.#ids = masterIds({ ids, start: Math.floor(random() * ids.length), memory: this.#memory.ids })
+    lease.on('state', this.#forget)
+    lease.on('event', this.#forget)
+  }
+
+  /** `{ requests, answers, nonStandardAcks, repeats, seenStation }` */
+  get counts() {
+    return { ...this.#counts }
+  }
+
+  /**
+   * @param {any} query
+   * @param {{ priority: number }} options
+   * @returns {Promise<(boolean|number)[]>} raw values in order
+   */
+  async read(query, { priority }) {
+    const key = keyOf(query)
+    const { station, deadline } = this.#settings
+    const options = { station, priority, key, deadline, label: key }
+    return (await this.#lease.run(() => this.#reading(query, key), options)).values
+  }
+
+  /**
+   * @param {() => { query: any, item: string }} take called when its turn has come: the latest value goes out
+   * @param {{ priority: number }} options
+   * @returns {Promise<true>}
+   */
+  async write(take, { priority }) {
+    const { station, deadline } = this.#settings
+    const make = () => {
+      const { query, item } = take()
+      return this.#writing(query, item)
+    }
+    return (await this.#lease.run(make, { station, priority, deadline, label: 'write' })).values
+  }
+
+  *#reading(query, key) {
+    const last = this.#begin()
+    const { soleMaster } = this.#settings
+    const same = soleMaster && last && last.key === key && last.stray === strayOf(this.#lease)
+    const result = yield* readDialog(query, { ...this.#options(), again: same ? last.master : undefined })
+    this.#note(result)
+    if (soleMaster) this.#memory.lastRead = { key, master: result.master, stray: strayOf(this.#lease) }
+    return result
+  }
+
+  *#writing(query, item) {
+    this.#begin()
+    const nonStandardAck = !this.#memory.openBitWrite
+    if (query.ask === 'writeBits') this.#memory.openBitWrite = true
+    const result = yield* writeDialog(query, { ...this.#options(), item, nonStandardAck })
+    this.#note(result)
+    return result
+  }
+
+  #options() {
+    const { station, steps, timeout, attempts, gap, limits } = this.#settings
+    return { station, steps, timeout, attempts, gap, limits, ids: this.#ids }
+  }
+
+  /** The line begins a run of a station only when no older answer can come any more. */
+  #begin() {
+    const { lastRead } = this.#memory
+    this.#ids.free()
+    this.#counts.requests++
+    this.#forget()
+    return lastRead
+  }
+
+  #note(result) {
+    this.#counts.answers++
+    if (result.nonStandard) this.#counts.nonStandardAcks++
+    if (result.repeated) this.#counts.repeats++
+    this.#counts.seenStation = result.seenStation ?? this.#counts.seenStation
+    this.#memory.openBitWrite = false
+  }
+
+  close() {
+    this.#lease.off('state', this.#forget)
+    this.#lease.off('event', this.#forget)
+  }
+}
+
+/** Grows with every byte that was not an answer. */
+const strayOf = lease => {
+  const { strayBytes = 0, skippedBytes = 0, crcErrors = 0 } = lease.line.stats()
+  return strayBytes + skippedBytes + crcErrors
+}
+
+/** Equal for equal queries: the same read that still waits is not queued twice. */
+const keyOf = query => {
+  if (query.ask !== 'readMixed') return `${query.ask} ${query.base} ${query.count}`
+  return `readMixed ${query.addresses.map(({ kind, address }) => `${kind[0]}${address}`).join(' ')}`
+}
+
+/** Errors that say nothing about the address asked for, but about station or line. */
+const isStationFailure = error => !String(error.code).startsWith('PLC_')
+
+const asPlcError = (error, station) =>
+  error instanceof PlcError ? error : new PlcError('BAD_ANSWER', { station, reason: error?.message, cause: error })
+
+module.exports = { Talk, asPlcError, isStationFailure, keyOf }

@@ -1,0 +1,238 @@
+'use strict'
+const { PlcError } = require('../error')
+const { planWrites } = require('../plan')
+const { PRIORITY } = require('../line')
+const { encodeValue } = require('../tag/value')
+const { createGuard } = require('./guard')
+const { outcomeOf, unsent, wordFor } = require('./outcome')
+const { asPlcError } = require('./talk')
+
+/**
+ * Writes: guarded before anything is sent, in as few frames as possible, never repeated. The first frame that is not
+ * confirmed ends the write.
+ *
+ * @typedef {object} Prepared
+ * @property {any[]} entries `{ item, value, from, to }`
+ * @property {any[]} points `{ kind, address, values, text }`
+ * @property {any[]} requests of the plan
+ */
+
+const MOST_ENTRIES = 1000
+const MOST_POINTS = 20000
+
+const checkEntries = entries => {
+  if (!Array.isArray(entries) || entries.length === 0) {
+    throw new PlcError('NOTHING_TO_WRITE', { reason: 'there is no entry' })
+  }
+  if (entries.length > MOST_ENTRIES) {
+    throw new PlcError('TOO_MANY', { count: entries.length, unit: 'values to write', most: MOST_ENTRIES })
+  }
+}
+
+const pointsOf = ({ item, values }) =>
+  values.map((raw, index) => ({
+    kind: item.kind,
+    address: item.address + index * item.type.words,
+    values: raw,
+    count: raw.length,
+    text: item.elements[index].text
+  }))
+
+class Writer {
+  #talk
+  #reader
+  #clock
+  #settings
+  #parse
+  #guard
+  /** Writes of the latest value that still wait for their turn: key -> job. */
+  #waiting = new Map()
+
+  /** @param {{ talk: any, reader: any, clock: any, settings: any, parse: (text: any) => any }} options */
+  constructor({ talk, reader, clock, settings, parse }) {
+    this.#talk = talk
+    this.#reader = reader
+    this.#clock = clock
+    this.#settings = settings
+    this.#parse = parse
+    this.#guard = createGuard(settings)
+  }
+
+  /** @param {import('../tag/item').Item} item @param {{ fixed?: boolean }} options @throws {PlcError} READ_ONLY, NOT_WRITABLE */
+  checkTarget(item, options) {
+    this.#guard.checkItem(item, options)
+  }
+
+  /**
+   * @param {{ item: string, value: any }[]} entries
+   * @param {{ fixed?: boolean, verify?: boolean, coalesce?: boolean }} options
+   * @returns {Promise<import('./outcome').Outcome>} never rejects
+   */
+  async write(entries, options) {
+    const start = this.#clock.now()
+    const outcome = await this.#outcome(entries, options)
+    return { ...outcome, ms: this.#clock.now() - start }
+  }
+
+  #outcome(entries, options) {
+    try {
+      const prepared = this.#prepare(entries, options)
+      return options.coalesce ? this.#latest(prepared, options) : this.#carryOut({ prepared, begun: false }, options)
+    } catch (error) {
+      const given = Array.isArray(entries) ? entries.slice(0, MOST_ENTRIES) : []
+      return unsent(
+        error,
+        given.map(entry => ({ item: entry?.item, value: entry?.value }))
+      )
+    }
+  }
+
+  /** @returns {Prepared} @throws {PlcError} whatever forbids the write */
+  #prepare(entries, { fixed }) {
+    checkEntries(entries)
+    const parsed = entries.map(entry => this.#entry(entry, fixed))
+    const points = []
+    for (const entry of parsed) {
+      entry.from = points.length
+      points.push(...pointsOf(entry))
+      entry.to = points.length
+    }
+    if (points.length > MOST_POINTS) {
+      throw new PlcError('TOO_MANY', { count: points.length, unit: 'values to write', most: MOST_POINTS })
+    }
+    return { entries: parsed, points, requests: planWrites(points, this.#settings.planLimits) }
+  }
+
+  #entry(entry, fixed) {
+    if (entry === null || typeof entry !== 'object')
+      throw new PlcError('NOTHING_TO_WRITE', { reason: 'an entry has no item' })
+    const item = this.#parse(entry.item)
+    this.#guard.checkItem(item, { fixed })
+    const values = encodeValue(item, entry.value)
+    this.#guard.checkValues(item, values)
+    return { item, value: entry.value, values, from: 0, to: 0 }
+  }
+
+  /** Of several writes of the same items that wait, only the latest goes out, in the place of the first. */
+  #latest(prepared, options) {
+    const key = JSON.stringify([prepared.entries.map(({ item }) => item.text), Boolean(options.verify)])
+    const job = this.#waiting.get(key)
+    if (!job) return this.#firstOf(key, prepared, options)
+    const { entries } = job.prepared
+    job.settle(unsent(new PlcError('SUPERSEDED', { item: entries[0].item.text }), entries))
+    job.prepared = prepared
+    return new Promise(resolve => (job.settle = resolve))
+  }
+
+  #firstOf(key, prepared, options) {
+    const job = { prepared, begun: false, settle: /** @type {(outcome: any) => void} */ (() => {}), begin: () => {} }
+    job.begin = () => void (this.#waiting.get(key) === job && this.#waiting.delete(key))
+    this.#waiting.set(key, job)
+    const promise = new Promise(resolve => (job.settle = resolve))
+    this.#carryOut(job, options).then(outcome => {
+      job.begin()
+      job.settle(outcome)
+    })
+    return promise
+  }
+
+  /** @param {any} job its `prepared` may be replaced until its first frame goes out */
+  async #carryOut(job, { verify }) {
+    const done = []
+    let attempts = 0
+    let error = null
+    for (let next = 0; next < job.prepared.requests.length && !error; next++) {
+      const take = () => {
+        job.begin?.()
+        const request = job.prepared.requests[next]
+        attempts++
+        return { query: request, item: job.prepared.points[request.points[0]].text }
+      }
+      error = await this.#send(take)
+      done.push(error ? { outcome: wordFor(error), error } : { outcome: 'confirmed' })
+    }
+    const { entries, points, requests } = job.prepared
+    const fates = points.map(() => ({ outcome: 'notSent' }))
+    requests.forEach((request, index) => {
+      if (done[index]) for (const point of request.points) fates[point] = done[index]
+    })
+    if (verify) await this.#verify(points, fates)
+    return { ...outcomeOf(entries, fates), attempts }
+  }
+
+  /** @returns {Promise<PlcError|null>} */
+  async #send(take) {
+    let item = ''
+    try {
+      await this.#talk.write(
+        () => {
+          const taken = take()
+          item = taken.item
+          return taken
+        },
+        { priority: PRIORITY.WRITE }
+      )
+      return null
+    } catch (caught) {
+      return this.#meaning(asPlcError(caught, this.#settings.station), item)
+    }
+  }
+
+  /** What the line broke off after a byte of it went out may have been carried out. */
+  #meaning(error, item) {
+    const { code, details } = error
+    if (code === 'WRITE_UNKNOWN' || code.startsWith('PLC_') || details.sent !== true) return error
+    return new PlcError('WRITE_UNKNOWN', { station: this.#settings.station, item, reason: code, cause: error })
+  }
+
+  /** Reads back what was confirmed or is unknown; what is read decides. */
+  async #verify(points, fates) {
+    const last = lastWritten(points, fates)
+    if (last.length === 0) return
+    const wanted = last.map(index => points[index])
+    const readings = await this.#reader.read(wanted, { priority: PRIORITY.ASK, fresh: true })
+    last.forEach((index, at) => {
+      fates[index] = judge(fates[index], points[index], readings[at])
+    })
+  }
+}
+
+/** Of the points that went out, those that no later one overwrites. */
+const lastWritten = (points, fates) => {
+  const words = new Map()
+  const bits = new Map()
+  const last = []
+  for (let index = points.length - 1; index >= 0; index--) {
+    const { outcome } = fates[index]
+    if (outcome !== 'confirmed' && outcome !== 'unknown') continue
+    const { kind, address, count } = points[index]
+    const places = Array.from({ length: count }, (_, at) => address + at)
+    const free = place => (kind === 'word' ? !words.has(place) && !bits.has(place) : !words.has(place >> 4))
+    const clear = places.every(free) && (kind === 'word' || !bits.has(`b${address}`))
+    for (const place of places) {
+      if (kind === 'word') words.set(place, index)
+      else bits.set(place >> 4, index).set(`b${place}`, index)
+    }
+    if (clear) last.unshift(index)
+  }
+  return last
+}
+
+const judge = (fate, { values, text }, reading) => {
+  if ('error' in reading) {
+    const reason = `it could not be read back: ${reading.error.code}`
+    return { outcome: 'unknown', error: new PlcError('WRITE_UNKNOWN', { item: text, reason, cause: reading.error }) }
+  }
+  if (values.every((value, index) => value === reading.raw[index])) return { outcome: 'confirmed' }
+  const shown = raw =>
+    raw.map(value => (typeof value === 'boolean' ? value : `${value.toString(16).toUpperCase()}h`)).join(' ')
+  const error = new PlcError('VERIFY_FAILED', {
+    item: text,
+    got: shown(reading.raw),
+    expected: shown(values),
+    cause: fate.error
+  })
+  return { outcome: 'failed', error }
+}
+
+module.exports = { Writer }

@@ -1,0 +1,43 @@
+'use strict'
+
+/** The public door: everything that nodes and programs use. No logic here. */
+
+const { CODES, PlcError } = require('./error')
+const { areaMap } = require('./codec/nx/areas')
+const { describeAddress, formatAddress, parseAddress } = require('./codec/nx/address')
+const { PRIORITY, createPool, lineSettings, listPorts } = require('./line')
+const { createNxPlc } = require('./device/nx-plc')
+const { openNxPlc } = require('./device/open')
+const { createThrottle } = require('./device/throttle')
+const { tagsFromCsv, tagsToCsv } = require('./tag/csv')
+const { parseItem } = require('./tag/item')
+const { nxNotation } = require('./tag/nx-notation')
+const { parseType } = require('./tag/types')
+const { createReport } = require('./output/report')
+const { entriesOf, itemsOf } = require('./output/entries')
+const { messagesOf } = require('./output/messages')
+
+module.exports = {
+  CODES,
+  PRIORITY,
+  PlcError,
+  areaMap,
+  createNxPlc,
+  createPool,
+  createReport,
+  createThrottle,
+  describeAddress,
+  entriesOf,
+  formatAddress,
+  itemsOf,
+  lineSettings,
+  listPorts,
+  messagesOf,
+  nxNotation,
+  openNxPlc,
+  parseAddress,
+  parseItem,
+  parseType,
+  tagsFromCsv,
+  tagsToCsv
+}

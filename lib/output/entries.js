@@ -1,0 +1,89 @@
+'use strict'
+const { PlcError } = require('../error')
+const { absurdity } = require('../tag/convert')
+
+/** Incoming messages -> what to write, what to read. Pure. Messages are hostile until proven otherwise. */
+
+const MOST_ENTRIES = 1000
+const MOST_ITEMS = 1000
+const MOST_TEXT = 100000 // characters of a list of items
+const LONGEST = 200 // characters of one item
+
+const own = (object, key) => (Object.hasOwn(object, key) ? object[key] : undefined)
+
+const isPairs = value => {
+  if (value === null || typeof value !== 'object' || Array.isArray(value)) return false
+  const prototype = Object.getPrototypeOf(value)
+  // objects of another context (function nodes) have another Object.prototype
+  return prototype === null || Object.getPrototypeOf(prototype) === null
+}
+
+const isScalar = value => ['string', 'number', 'boolean'].includes(typeof value)
+
+const checkValue = (item, value) => {
+  const values = Array.isArray(value) ? Array.from(value) : [value]
+  if (values.length === 0) throw new PlcError('BAD_VALUE', { item, value: [], reason: 'it is empty' })
+  for (const one of values) {
+    const absurd = absurdity(one)
+    if (absurd) throw new PlcError('BAD_VALUE', { item, value: String(one), reason: absurd })
+    if (!isScalar(one)) {
+      throw new PlcError('BAD_VALUE', { item, value: typeof one, reason: 'a number, a text or true/false is needed' })
+    }
+  }
+  return { item, value: Array.isArray(value) ? values : value }
+}
+
+/**
+ * The values that a message writes: its payload to the fixed target; or the pairs of an object payload; or the payload to
+ * the item that `topic` names.
+ * @param {Record<string, any>} msg only its own `payload` and `topic` count
+ * @param {{ target?: string }} [options] target: item fixed in the node
+ * @returns {{ item: string, value: any }[]} at most 1000
+ * @throws {PlcError} NOTHING_TO_WRITE, BAD_VALUE (empty, null, NaN, an object), TOO_MANY
+ */
+const entriesOf = (msg, { target = '' } = {}) => {
+  if (msg === null || typeof msg !== 'object') throw new PlcError('NOTHING_TO_WRITE', { reason: 'there is no message' })
+  const payload = own(msg, 'payload')
+  if (target.trim() !== '') return [checkValue(target.trim(), payload)]
+  if (isPairs(payload)) return pairsOf(payload)
+  const topic = own(msg, 'topic')
+  if (typeof topic !== 'string' || topic.trim() === '') {
+    throw new PlcError('NOTHING_TO_WRITE', { reason: 'no target, no object as payload, no item as topic' })
+  }
+  if (topic.length > LONGEST) throw new PlcError('NOTHING_TO_WRITE', { reason: 'the topic is too long for an item' })
+  return [checkValue(topic.trim(), payload)]
+}
+
+const pairsOf = payload => {
+  const names = Object.keys(payload)
+  if (names.length === 0) throw new PlcError('NOTHING_TO_WRITE', { reason: 'the payload is an empty object' })
+  if (names.length > MOST_ENTRIES) {
+    throw new PlcError('TOO_MANY', { count: names.length, unit: 'values to write', most: MOST_ENTRIES })
+  }
+  return names.map(name => checkValue(name.slice(0, LONGEST), payload[name]))
+}
+
+const bad = reason => new PlcError('BAD_ITEMS', { reason })
+
+/**
+ * A list of items as it came in `msg.items` or stands in a configuration: an array of texts, or one text with commas,
+ * semicolons or line breaks.
+ * @param {unknown} given
+ * @returns {string[]} 1 to 1000 texts, not parsed yet
+ * @throws {PlcError} BAD_ITEMS, TOO_MANY
+ */
+const itemsOf = given => {
+  if (typeof given === 'string' && given.length > MOST_TEXT) throw bad('the text is too long')
+  const list = typeof given === 'string' ? given.split(/[,;\r\n]/).filter(text => text.trim() !== '') : given
+  if (!Array.isArray(list)) throw bad(given === undefined ? 'it is missing' : `it is of the type ${typeof given}`)
+  if (list.length === 0) throw bad('it is empty')
+  if (list.length > MOST_ITEMS) throw new PlcError('TOO_MANY', { count: list.length, unit: 'items', most: MOST_ITEMS })
+  return Array.from(list, (text, index) => {
+    if (typeof text !== 'string') throw bad(`number ${index + 1} is no text`)
+    if (text.trim() === '') throw bad(`number ${index + 1} is empty`)
+    if (text.length > LONGEST) throw bad(`number ${index + 1} is too long`)
+    return text.trim()
+  })
+}
+
+module.exports = { entriesOf, itemsOf }

@@ -39,11 +39,11 @@ const SETTINGS = {
 
 /**
  * A temporary user directory with links to the packages that the flows need.
- * @param {{ settings?: object, modules?: Record<string, string> }} [options] modules: package name -> its folder
+ * @param {{ settings?: object, modules?: Record<string, string>, product?: string }} [options] modules: package name -> its folder
  */
-function makeUserDir({ settings = {}, modules = {} } = {}) {
+function makeUserDir({ settings = {}, modules = {}, product = packageFolder() } = {}) {
   const userDir = fs.mkdtempSync(path.join(os.tmpdir(), 'node-red-test-'))
-  const all = { '@nxline/node-red-serial-plc': packageFolder(), ...modules }
+  const all = { '@nxline/node-red-serial-plc': product, ...modules }
   for (const [name, folder] of Object.entries(all)) {
     const link = path.join(userDir, 'node_modules', name)
     fs.mkdirSync(path.dirname(link), { recursive: true })
@@ -69,7 +69,7 @@ async function until(check, { what, patience = 20000, every = 20 }) {
 }
 
 /** The editor's web socket: debug messages and statuses as the sidebar sees them. */
-async function listen(url, token) {
+async function listen(url) {
   const WebSocket = createRequire(require.resolve('mqtt'))('ws')
   const socket = new WebSocket(`${url.replace('http', 'ws')}/comms`)
   const debug = []
@@ -81,7 +81,6 @@ async function listen(url, token) {
     }
   })
   await new Promise((resolve, reject) => socket.once('open', resolve).once('error', reject))
-  if (token) socket.send(JSON.stringify({ auth: token }))
   socket.send(JSON.stringify({ subscribe: 'debug' }))
   socket.send(JSON.stringify({ subscribe: 'status/#' }))
   const close = () => new Promise(resolve => socket.once('close', resolve).close())
@@ -97,36 +96,32 @@ function valueOf({ format, msg }) {
 }
 
 /**
- * @param {{ settings?: object, modules?: Record<string, string>, flow?: object[], env?: object }} [options]
+ * @param {{ red?: string, node?: string, product?: string, settings?: object, modules?: Record<string, string>, flow?: object[],
+ *   env?: object, probe?: boolean }} [options] red, node, product: as the variables above; probe: `count()` works
  * @returns {Promise<Runtime>}
  */
-async function startNodeRed({ settings, modules, flow, env = {} } = {}) {
-  const userDir = makeUserDir({ settings, modules })
+async function startNodeRed(options = {}) {
+  const { red = redFolder(), settings, flow } = options
+  const userDir = makeUserDir(options)
   if (flow) fs.writeFileSync(path.join(userDir, 'flows.json'), JSON.stringify(flow))
   const port = await freePort(0)
-  const args = [path.join(redFolder(), 'red.js'), '-u', userDir, '-p', String(port)]
-  const child = spawn(nodeBinary(), args, {
-    cwd: userDir,
-    env: { ...process.env, ...env },
-    stdio: ['ignore', 'pipe', 'pipe']
-  })
+  const child = spawnRed(options, [path.join(red, 'red.js'), '-u', userDir, '-p', String(port)])
   let log = ''
-  child.stdout.on('data', bytes => (log += bytes))
-  child.stderr.on('data', bytes => (log += bytes))
+  child.stdout?.on('data', bytes => (log += bytes))
+  child.stderr?.on('data', bytes => (log += bytes))
   const exited = new Promise(resolve => child.once('exit', resolve))
   const url = `http://127.0.0.1:${port}`
   const remove = () => fs.rmSync(userDir, { recursive: true, force: true })
+  const ended = () => child.exitCode !== null || child.signalCode !== null
   try {
-    await until(() => /Started flows|Waiting for missing types/.test(log) || child.exitCode !== null, {
-      what: () => `Node-RED:\n${log}`
-    })
-    if (child.exitCode !== null) throw new Error(`Node-RED ended:\n${log}`)
+    await until(() => /Started flows|missing types/.test(log) || ended(), { what: () => `Node-RED:\n${log}` })
+    if (ended()) throw new Error(`Node-RED ended:\n${log}`)
   } catch (error) {
     child.kill('SIGKILL')
     remove()
     throw error
   }
-  const comms = settings?.adminAuth ? null : await listen(url)
+  const comms = settings && 'adminAuth' in settings ? null : await listen(url)
   const stop = async () => {
     await comms?.close()
     child.kill('SIGTERM')
@@ -134,9 +129,26 @@ async function startNodeRed({ settings, modules, flow, env = {} } = {}) {
     await exited
     clearTimeout(late)
     remove()
+    return child.signalCode === 'SIGKILL' ? 'killed' : 'ended'
   }
-  return { url, userDir, child, stop, log: () => log, ...api(url), ...watching(comms) }
+  return { url, userDir, child, stop, log: () => log, ...api(url), ...watching(comms), count: () => countIn(child) }
 }
+
+function spawnRed({ node = nodeBinary(), env = {}, probe = false }, args) {
+  const preload = probe ? ['--expose-gc', '--require', path.join(__dirname, 'probe.js')] : []
+  return spawn(node, [...preload, ...args], {
+    cwd: args[2],
+    env: { ...process.env, ...env },
+    stdio: ['ignore', 'pipe', 'pipe', probe ? 'ipc' : 'ignore']
+  })
+}
+
+/** What the process has open (support/probe.js): by type of handle, file descriptors, listeners of the process, heap. */
+const countIn = child =>
+  new Promise(resolve => {
+    child.once('message', resolve)
+    child.send('count')
+  })
 
 function api(url) {
   const ask = async (method, where, body, headers = {}) => {
@@ -186,11 +198,12 @@ function watching(comms) {
  * @property {string} url of editor and admin API
  * @property {string} userDir
  * @property {import('node:child_process').ChildProcess} child
- * @property {() => Promise<void>} stop ends it and removes its user directory
+ * @property {() => Promise<'ended'|'killed'>} stop ends it and removes its user directory
  * @property {() => string} log what it has printed
  * @property {(method: string, where: string, body?: unknown, headers?: object) => Promise<any>} ask
  * @property {(flows: object[], type?: string) => Promise<any>} deploy
  * @property {(id: string) => Promise<any>} inject presses an inject node's button
+ * @property {() => Promise<any>} count only with `probe`
  * @property {(id: string, is?: (value: any) => boolean, patience?: number) => Promise<any>} next
  */
 

@@ -82,6 +82,12 @@ describe('NX conversation: reads are repeated', () => {
     assert.deepEqual([got.steps.length, got.result.master], [3, 0xe4])
   })
 
+  it('nor is a frame inside a late answer to the former ID', () => {
+    const inside = answer(0xe3, 0xa3, WORDS_INFO)
+    const late = answer(0xe2, 0xa3, [...inside, 0, 0])
+    assert.deepEqual(read([LOST, Buffer.concat([late, answer(0xe3, 0xa3, [1, 0, 2, 0])])]).result.values, [1, 2])
+  })
+
   it('three tries in all, then the last failure', () => {
     const got = read([LOST, CUT, LOST])
     assert.deepEqual([got.error.code, got.steps.length], ['TIMEOUT', 3])
@@ -214,6 +220,13 @@ describe('NX conversation: writes are never repeated', () => {
     assert.equal(write([answer(0xe2, 0x00, [0])]).error.code, 'PLC_NO_SERVICE')
   })
 
+  it('is not confirmed by what its own echo holds', () => {
+    const ack = answer(0xe2, 0xa4, [0])
+    const values = [0, 2, 4].map(i => ack.readUInt16LE(i)).concat(ack[6])
+    const echo = frame([1, 0xe2, 0x24], [0x40, 0x01, ...ack, 0])
+    unknown(write([echo], {}, { ask: 'writeWords', base: 0x140, values }), 'TIMEOUT', 1)
+  })
+
   it('says what was written', () => {
     assert.match(write([LOST]).error.message, /word 0140h/)
     assert.match(write([LOST], { item: 'setpoint' }).error.message, /setpoint/)
@@ -233,6 +246,12 @@ describe('NX conversation: writes are never repeated', () => {
     assert.deepEqual([got.result.values, got.result.nonStandard], [true, true])
     unknown(write([printed]), 'TIMEOUT', 1)
     assert.equal(write([answer(0xe2, 0xa4, [0])], { nonStandardAck: true }).result.nonStandard, false)
+    const bits = { ask: 'writeBits', base: 1, values: [true] }
+    assert.equal(
+      write([printed], { nonStandardAck: true }, bits).result.nonStandard,
+      false,
+      'it is the right one for bits'
+    )
   })
 })
 
@@ -258,6 +277,14 @@ describe('NX conversation: repeat by an RR alone', () => {
       )
       assert.deepEqual([got.result.repeated, got.result.master, got.result.attempts], [false, 0xe2, 2])
     }
+  })
+
+  it('a repeat that failed takes no try from the Q', () => {
+    const got = read([LOST, LOST, LOST, LOST], { again: 0xe9 })
+    assert.deepEqual(
+      got.steps.map(step => step.send[2]),
+      [0, 0x23, 0x23, 0x23]
+    )
   })
 
   it('the ID of a repeat that failed rests', () => {

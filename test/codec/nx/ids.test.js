@@ -70,6 +70,14 @@ describe('NX master IDs: the allocator', () => {
     assert.deepEqual(all.resting(), [])
   })
 
+  it('goes on in turn behind the one it had to use', () => {
+    const all = masterIds({ ids })
+    for (const id of [all.take(), all.take(), all.take()].reverse()) all.failed(id)
+    assert.equal(all.take(), 226)
+    all.free()
+    assert.equal(all.take(), 224)
+  })
+
   it('a single one never rests', () => {
     const all = masterIds({ ids: [226] })
     all.failed(all.take())

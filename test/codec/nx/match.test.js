@@ -77,6 +77,11 @@ describe('NX match: the awaited answer', () => {
   it('is found behind a false header whose CRC does not fit', () => {
     const got = receive(match(), [hex('E2 01 A3 04'), R])
     assert.deepEqual([got.take, got.skipped], [R, 4])
+    const single = receive(
+      match(),
+      [...Buffer.concat([hex('E2 01 A3 04'), R])].map(byte => Buffer.of(byte))
+    )
+    assert.deepEqual([single.take, single.skipped], [R, 4])
     const late = receive(match(), [Buffer.concat([hex('E2 01 A3 04 34 12 CD AB 8D 12'), R])])
     assert.deepEqual([late.take, late.skipped], [R, 10])
   })

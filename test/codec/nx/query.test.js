@@ -193,6 +193,8 @@ describe('NX queries: limits', () => {
     assert.equal(send(words(8), { info: 18 }), 'sent')
     assert.equal(send(words(9), { info: 18 }), 'FRAME_TOO_LONG')
     assert.equal(send({ ask: 'readWords', base: 0, count: 10 }, { info: 18 }), 'FRAME_TOO_LONG')
+    assert.equal(send(places(9, 'bit'), { info: 18 }), 'sent')
+    assert.equal(send(places(10, 'bit'), { info: 18 }), 'FRAME_TOO_LONG', 'the query is longer than its answer')
     assert.equal(send({ ask: 'readWords', base: 0, count: 33 }, { readWords: 32 }), 'BAD_COUNT')
     assert.equal(send({ ask: 'readWords', base: 0, count: 32 }, { readWords: '32' }), 'sent')
     for (const settings of [

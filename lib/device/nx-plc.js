@@ -131,7 +131,7 @@ class NxPlc {
 
   /**
    * Writes values; all are checked before the first is sent.
-   * @param {{ item: string, value: any }[]} entries at most 1000
+   * @param {{ item: string, value: any, fixed?: boolean }[]} entries at most 1000; `fixed` of one as in the options
    * @param {object} [options]
    * @param {boolean} [options.fixed] the targets were fixed by the flow's author, not by a message
    * @param {boolean} [options.verify] read back; decides also what an unanswered write has become

@@ -105,7 +105,7 @@ class Reader {
   async #attempt(request, job) {
     try {
       const answer = await this.#talk.read(request, job)
-      const at = this.#clock.wall()
+      const at = Math.round(this.#clock.wall())
       for (const { point, at: place, count } of request.points) {
         job.readings[point] = { raw: answer.slice(place, place + count), at }
         this.#absent.delete(keyOf(job.points[point]))
@@ -144,7 +144,7 @@ class Reader {
   }
 
   #fail(indexes, error, job) {
-    const at = this.#clock.wall()
+    const at = Math.round(this.#clock.wall())
     for (const index of indexes) job.readings[index] ??= { error, at }
   }
 

@@ -64,7 +64,7 @@ class Writer {
   }
 
   /**
-   * @param {{ item: string, value: any }[]} entries
+   * @param {{ item: string, value: any, fixed?: boolean }[]} entries
    * @param {{ fixed?: boolean, verify?: boolean, coalesce?: boolean }} options
    * @returns {Promise<import('./outcome').Outcome>} never rejects
    */
@@ -107,7 +107,8 @@ class Writer {
     if (entry === null || typeof entry !== 'object')
       throw new PlcError('NOTHING_TO_WRITE', { reason: 'an entry has no item' })
     const item = this.#parse(entry.item)
-    this.#guard.checkItem(item, { fixed })
+    // the flow's author may fix single targets of a message, too
+    this.#guard.checkItem(item, { fixed: fixed || entry.fixed === true })
     const values = encodeValue(item, entry.value)
     this.#guard.checkValues(item, values)
     return { item, value: entry.value, values, from: 0, to: 0 }

@@ -1,0 +1,77 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { listPorts } = require('../../lib/line')
+
+/** A file system of the test: by-id names with their devices, and what is in /dev. */
+const files = ({ links = {}, dev = [] } = {}) => ({
+  readdir: async folder => {
+    const names = folder === '/dev' ? dev : Object.keys(links)
+    if (folder !== '/dev' && names.length === 0) throw Object.assign(new Error('ENOENT'), { code: 'ENOENT' })
+    return names
+  },
+  realpath: async name => {
+    const device = links[name.replace('/dev/serial/by-id/', '')]
+    if (!device) throw new Error('ENOENT')
+    return device
+  }
+})
+const withoutUdev = () => Promise.reject(new Error('spawn udevadm ENOENT'))
+
+const FTDI = 'usb-FTDI_USB-RS485_Cable_FT1ABCDE-if00-port0'
+const MOXA = 'usb-Moxa_Technologies_UPort_1150-if00-port0'
+
+describe('line: the list of ports', () => {
+  it('names adapters, with the stable path', async () => {
+    const list = async () => [
+      { path: '/dev/ttyUSB1', manufacturer: 'Moxa', pnpId: MOXA },
+      { path: '/dev/ttyUSB0', manufacturer: 'FTDI', pnpId: FTDI }
+    ]
+    const links = { [FTDI]: '/dev/ttyUSB0', [MOXA]: '/dev/ttyUSB1' }
+    assert.deepEqual(await listPorts({ list, files: files({ links }) }), [
+      { path: `/dev/serial/by-id/${FTDI}`, device: '/dev/ttyUSB0', label: 'FTDI USB-RS485 Cable (ttyUSB0)' },
+      { path: `/dev/serial/by-id/${MOXA}`, device: '/dev/ttyUSB1', label: 'Moxa Technologies UPort 1150 (ttyUSB1)' }
+    ])
+  })
+
+  it('finds by-id names and devices where udevadm is missing', async () => {
+    const found = await listPorts({
+      list: withoutUdev,
+      files: files({
+        links: { [FTDI]: '/dev/ttyUSB0' },
+        dev: ['ttyUSB0', 'ttyUSB1', 'ttyACM0', 'ttyAMA0', 'tty1', 'null']
+      })
+    })
+    assert.deepEqual(
+      found.map(({ label }) => label),
+      ['FTDI USB-RS485 Cable (ttyUSB0)', 'ttyACM0', 'ttyAMA0', 'ttyUSB1']
+    )
+    assert.equal(found[3].path, '/dev/ttyUSB1')
+  })
+
+  it('hides the empty ports of the board if there are others', async () => {
+    const list = async () => [{ path: '/dev/ttyS0' }, { path: '/dev/ttyS31' }, { path: '/dev/ttyUSB0' }]
+    const paths = async l => (await listPorts({ list: l, files: files() })).map(({ path }) => path)
+    assert.deepEqual(await paths(list), ['/dev/ttyUSB0'])
+    assert.deepEqual(await paths(async () => [{ path: '/dev/ttyS10' }, { path: '/dev/ttyS9' }]), [
+      '/dev/ttyS9',
+      '/dev/ttyS10'
+    ])
+  })
+
+  it('knows Windows names', async () => {
+    const list = async () => [{ path: 'COM10' }, { path: 'COM3', manufacturer: 'FTDI' }]
+    assert.deepEqual(
+      (await listPorts({ list, files: files() })).map(({ path, label }) => `${path} ${label}`),
+      ['COM10 COM10', 'COM3 FTDI (COM3)']
+    )
+  })
+
+  it('is empty, not an error, where there is nothing', async () => {
+    assert.deepEqual(await listPorts({ list: withoutUdev, files: files() }), [])
+  })
+
+  it('works on this machine', async () => {
+    assert.ok(Array.isArray(await listPorts()))
+  })
+})

@@ -1,80 +1,59 @@
 'use strict'
-const { PlcError } = require('../lib')
+const { PlcError, entriesOf } = require('../lib')
+const { withCode } = require('./faults')
 const { openSession } = require('./session')
 
-const isPlain = value =>
-  value !== null && typeof value === 'object' && [Object.prototype, null].includes(Object.getPrototypeOf(value))
+const itemNames = entries => entries.map(({ item }) => item)
 
-const own = (msg, name) => (Object.hasOwn(msg, name) ? msg[name] : undefined)
+/** @throws {PlcError} RETAINED_REFUSED: a reconnect to the broker would write last night's set value again */
+const checkRetained = (msg, entries) => {
+  const retained = Object.hasOwn(msg, 'retain') && msg.retain === true
+  if (retained) throw new PlcError('RETAINED_REFUSED', { item: itemNames(entries).join(', ') })
+}
 
-/**
- * What a message wants to be written.
- * @param {string} target fixed in the node, or ''
- * @param {Record<string, any>} msg
- * @returns {{ item: string, value: unknown, fixed: boolean }[]}
- * @throws {PlcError} NOTHING_TO_WRITE
- */
-const entriesOf = (target, msg) => {
-  const payload = own(msg, 'payload')
-  const topic = own(msg, 'topic')
-  if (target) return [{ item: target, value: payload, fixed: true }]
-  if (isPlain(payload)) {
-    const pairs = Object.entries(payload)
-    if (pairs.length === 0) throw new PlcError('NOTHING_TO_WRITE', { reason: 'the payload is an empty object' })
-    return pairs.map(([item, value]) => ({ item, value, fixed: false }))
+const refusal = ({ code, message }) => ({ outcome: 'refused', items: [], code, text: message, attempts: 0, ms: 0 })
+
+/** Sets the topic of what goes out. */
+const setTopic = (msg, { settings, plc, entries }) => {
+  if (settings.topic === 'fixed') msg.topic = settings.topicText
+  if (settings.topic === 'item' && entries.length > 0) {
+    msg.topic = entries.length === 1 ? entries[0].item : plc.label
   }
-  if (typeof topic === 'string' && topic.trim()) return [{ item: topic.trim(), value: payload, fixed: false }]
-  throw new PlcError('NOTHING_TO_WRITE', { reason: 'there is no target, no object as payload and no topic' })
 }
 
-const refusal = (error, items) => ({ outcome: 'refused', items, code: error.code, text: error.message, attempts: 0, ms: 0, error })
-
-const topicOf = (settings, entries, msg) => {
-  if (settings.topic === 'keep') return msg.topic
-  return settings.topic === 'fixed' ? settings.topicText : entries.map(({ item }) => item).join(',')
-}
-
-const writer = session => {
+const createWriter = session => {
   const { settings, plc, device, display } = session
+  const { target, verify, coalesce } = settings
 
   const attempt = async msg => {
-    let items = settings.target ? [settings.target] : []
+    let entries = []
     try {
-      const entries = entriesOf(settings.target, msg)
-      items = entries.map(({ item }) => item)
-      if (own(msg, 'retain') === true && !settings.acceptRetained) {
-        throw new PlcError('RETAINED_REFUSED', { item: items.join(', ') })
-      }
-      display.update({ phase: 'writing' })
-      const outcome = await device.write(entries, { verify: settings.verify, coalesce: settings.coalesce })
-      return { outcome, entries }
-    } catch (error) {
-      return { outcome: refusal(error, items), entries: items.map(item => ({ item })) }
+      entries = entriesOf(msg, { target })
+      if (!settings.acceptRetained) checkRetained(msg, entries)
+    } catch (/** @type {any} */ error) {
+      return { entries, write: refusal(error) }
     }
+    display.update({ phase: 'writing' })
+    const write = await device.write(entries, { fixed: target !== '', verify, coalesce })
+    return { entries, write: { ...write, ms: Math.round(write.ms) } }
   }
 
   return async (msg, send) => {
-    const { outcome, entries } = await attempt(msg)
-    const { error, ...write } = outcome
+    const { entries, write } = await attempt(msg)
     if (!session.closed) display.update({ phase: 'written', outcome: write.outcome, code: write.code })
     msg.write = write
+    msg.device = plc.label
     if (plc.simulated) msg.simulated = true
-    msg.topic = topicOf(settings, entries, msg)
+    setTopic(msg, { settings, plc, entries })
     if (write.outcome === 'confirmed') return send(msg)
     if (settings.onFailure === 'output') return send([null, msg])
-    if (write.code === 'SUPERSEDED') return undefined
-    throw error ?? Object.assign(new Error(write.text), { code: write.code })
+    // who asked for the latest value only does not want to hear of each older one
+    if (write.code !== 'SUPERSEDED') throw withCode(write.code, write.text)
   }
 }
 
-/** A target that can never be written is a mistake of the flow: it is refused when the flow starts. */
-const checkTarget = ({ settings, plc, device }) => {
-  if (!settings.target) return
-  device.item(settings.target)
-  if (plc.access !== 'write') throw new PlcError('READ_ONLY', { item: settings.target, station: plc.station })
-}
-
 module.exports = function (RED) {
+  /** @this {any} */
   function NxWrite(config) {
     RED.nodes.createNode(this, config)
     let write
@@ -82,8 +61,10 @@ module.exports = function (RED) {
       type: 'nx-write',
       config,
       start(opened) {
-        checkTarget(opened)
-        write = writer(opened)
+        if (opened.plc.tagFault) throw opened.plc.tagFault
+        // a target that can never be written is a mistake of the flow: refused when the flow starts
+        if (opened.settings.target) opened.device.checkTarget(opened.settings.target, { fixed: true })
+        write = createWriter(opened)
       }
     })
     this.on('input', (msg, send, done) => {

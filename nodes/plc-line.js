@@ -47,6 +47,7 @@ const listHandler = (_request, response) =>
   )
 
 module.exports = function (RED) {
+  /** @this {any} */
   function PlcLine(config) {
     RED.nodes.createNode(this, config)
     // only nodes on a tab stand in here: nx-config enters its readers and writers
@@ -55,7 +56,7 @@ module.exports = function (RED) {
     try {
       const settings = readSettings('plc-line', config)
       this.simulated = settings.transport === 'simulated'
-      this.wire = this.simulated ? simulatedWire(settings) : undefined
+      this.wire = this.simulated ? simulatedWire({ baudRate: settings.baudRate }) : undefined
       const wire = this.simulated ? { wire: this.wire.wire, path: this.id } : {}
       this.settings = poolSettings({ ...settings, name: settings.name || '', ...wire })
     } catch (error) {

@@ -115,7 +115,8 @@ const READERS = {
  */
 const readProperty = (row, given) => {
   const missing = given === undefined || given === null || (typeof given === 'string' && given.trim() === '')
-  if (missing) return row.needed && row.fallback === '' ? { problem: 'missing', value: row.fallback } : { value: row.fallback }
+  if (missing)
+    return row.needed && row.fallback === '' ? { problem: 'missing', value: row.fallback } : { value: row.fallback }
   const variable = typeof given === 'string' ? VARIABLE.exec(given.trim()) : null
   if (variable) return { variable: variable[1] }
   return READERS[row.kind](row, given)

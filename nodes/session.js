@@ -49,7 +49,9 @@ const findPlc = (RED, settings, node) => {
  */
 const openSession = (RED, node, { type, config, start }) => {
   const display = statusDisplay(RED, node)
-  const session = { node, display, settings: null, plc: null, device: null, fault: null, closed: false }
+  /** @type {any} */
+  const session = { node, display, settings: null, plc: null, device: null, fault: null, closed: false, failed: null }
+  /** @type {any} */
   let stop
   const attached = () => {
     session.settings = readSettings(type, config)
@@ -60,10 +62,14 @@ const openSession = (RED, node, { type, config, start }) => {
   }
   try {
     attached()
-  } catch (error) {
+  } catch (/** @type {any} */ error) {
     session.fault = error
     display.update({ fault: error })
     node.error(error, {})
+  }
+  session.failed = (error, done) => {
+    if (!session.closed) display.update({ phase: 'failed', code: error.code })
+    done(error)
   }
   node.on('close', (_removed, done) => {
     session.closed = true

@@ -54,22 +54,25 @@ const OUTCOMES = {
 }
 
 const show = (fill, shape, key, values = {}) => ({ fill, shape, key, values })
-const causeOf = (code, otherwise) => CAUSES[code] || otherwise
+const causeOf = (code, otherwise) => CAUSES[code ?? ''] || otherwise
 
+/** @param {any} line */
 const lineStatus = ({ state, reason }) => {
   if (state === 'opening' || state === 'closed') return show('yellow', 'ring', 'connecting')
   if (state === 'jammed') return show('red', 'ring', 'jammed')
   return show('red', 'ring', REASONS[reason?.code] || 'down')
 }
 
+/** @param {State} state */
 const readStatus = ({ count = 0, bad = 0, code }) => {
   if (bad === 0) return show('green', 'dot', count === 1 ? 'value' : 'values', { count })
   if (bad < count) return show('yellow', 'ring', 'someBad', { bad, count })
   return show('red', 'ring', causeOf(code, 'error'))
 }
 
+/** @param {State} state */
 const writeStatus = ({ outcome, code }) => {
-  const known = OUTCOMES[outcome]
+  const known = OUTCOMES[outcome ?? '']
   if (known) return show(known.fill, known.shape, known.key)
   return outcome === 'refused'
     ? show('yellow', 'ring', causeOf(code, 'notWritten'))

@@ -1,6 +1,6 @@
 'use strict'
-const { PlcError, createNxPlc, listPorts } = require('../lib')
-const { deviceSettings } = require('./device-settings')
+const { PlcError, listPorts } = require('../lib')
+const { createDevice, deviceSettings } = require('./device-settings')
 const { PROPERTIES } = require('./properties')
 const { readSettings } = require('./settings')
 const { sharedPool } = require('./pool')
@@ -52,7 +52,10 @@ const sameLine = (live, settings) => Object.keys(settings).every(name => live.se
 const leaseFor = async (RED, { line, plc }) => {
   const live = liveNode(RED, 'plc-line', line?.id)
   const settings = poolSettings(readSettings('plc-line', taken('plc-line', line, live)))
-  if (live && (settings.transport === 'simulated' ? live.simulated : sameLine(live, { ...settings, name: live.settings.name }))) {
+  if (
+    live &&
+    (settings.transport === 'simulated' ? live.simulated : sameLine(live, { ...settings, name: live.settings.name }))
+  ) {
     const undo = live.simulated ? live.plcs.visit(plc) : undefined
     return { lease: live.lease(OWNER), undo }
   }
@@ -77,8 +80,8 @@ const itemToRead = (device, tags) => {
 const problem = error => ({ code: error.code, message: error.message, details: error.details })
 
 const readOnce = async (lease, settings) => {
-  const plc = { settings: { ...settings, attempts: 1, access: 'read' }, label: `station ${settings.station}` }
-  const device = createNxPlc({ lease, ...deviceSettings({ ...plc, lineNode: null }) })
+  const own = { ...settings, attempts: 1, access: 'read' }
+  const { device } = createDevice(lease, deviceSettings(own, { name: OWNER.name, stations: [] }))
   const start = performance.now()
   try {
     const item = itemToRead(device, settings.tags)
@@ -88,7 +91,7 @@ const readOnce = async (lease, settings) => {
     const { code, text } = result
     return { ok: false, reached: code.startsWith('PLC_'), error: { code, message: text } }
   } finally {
-    await device.close()
+    device.close()
   }
 }
 

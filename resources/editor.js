@@ -107,7 +107,8 @@ var nxlineSerialPlc = (() => {
       };
       var readProperty = (row, given) => {
         const missing = given === void 0 || given === null || typeof given === "string" && given.trim() === "";
-        if (missing) return row.needed && row.fallback === "" ? { problem: "missing", value: row.fallback } : { value: row.fallback };
+        if (missing)
+          return row.needed && row.fallback === "" ? { problem: "missing", value: row.fallback } : { value: row.fallback };
         const variable = typeof given === "string" ? VARIABLE.exec(given.trim()) : null;
         if (variable) return { variable: variable[1] };
         return READERS[row.kind](row, given);
@@ -316,7 +317,12 @@ var nxlineSerialPlc = (() => {
       });
       var shown = (value) => {
         if (value === void 0) return "?";
-        return typeof value === "string" ? value : JSON.stringify(value) ?? String(value);
+        if (typeof value === "string") return value;
+        try {
+          return JSON.stringify(value) ?? String(value);
+        } catch {
+          return typeof value;
+        }
       };
       var fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]).slice(0, 200));
       var PlcError = class extends Error {
@@ -1423,7 +1429,10 @@ var nxlineSerialPlc = (() => {
       };
       var readSettings = (given, character) => {
         const station = readStation(given.station);
-        const steps = Number(choice("steps", given.steps, [2, 4]));
+        const steps = (
+          /** @type {2|4} */
+          choice("steps", given.steps, [2, 4])
+        );
         const gap = wholeNumber("gap", given.gap, { fallback: GAP, least: 0, most: 1e4 }) || GAP;
         const wordOrder = choice("wordOrder", given.wordOrder, ["low", "high"]);
         const byteOrder = choice("byteOrder", given.byteOrder, ["low", "high"]);
@@ -1852,7 +1861,17 @@ var nxlineSerialPlc = (() => {
         const message = note();
         const read = () => readFields(fields, data);
         const judge = () => judgeTag(read(), message, context);
-        container.append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit)).append(flex(fields.scale, fields.offset, fields.deadband, fields.wordOrder, fields.min, fields.max, fields.writable.label)).append(message).on("input change", judge);
+        container.append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit)).append(
+          flex(
+            fields.scale,
+            fields.offset,
+            fields.deadband,
+            fields.wordOrder,
+            fields.min,
+            fields.max,
+            fields.writable.label
+          )
+        ).append(message).on("input change", judge);
         container.data("nxline", { read, judge });
         judge();
       };
@@ -1928,7 +1947,9 @@ var nxlineSerialPlc = (() => {
           judgeArea(read(), message);
           changed();
         };
-        container.append(flex(fields.area, fields.base, fields.words, fields.as, fields.note, fields.confirmed.label, fields.remove.label)).append(message).on("input change", judge);
+        container.append(
+          flex(fields.area, fields.base, fields.words, fields.as, fields.note, fields.confirmed.label, fields.remove.label)
+        ).append(message).on("input change", judge);
         container.data("nxline", { read, judge });
         judge();
       };
@@ -1991,10 +2012,18 @@ var nxlineSerialPlc = (() => {
       };
       var plcProperties = (node) => {
         const fields = ["name", "line", "station", "steps", "timeout", "masterIds"];
-        return { id: node.id, ...Object.fromEntries(fields.map((name) => [name, value(name)])), areas: areaRows(), tags: tagRows() };
+        return {
+          id: node.id,
+          ...Object.fromEntries(fields.map((name) => [name, value(name)])),
+          areas: areaRows(),
+          tags: tagRows()
+        };
       };
       var showResult = (text, colour) => $("#nxline-nx-test-result").show().text(text).css({ borderLeft: `4px solid var(${colour})` });
-      var sentence = (answer) => answer.ok ? [t("test.ok", answer), "--red-ui-text-color-success"] : [t(answer.reached ? "test.reached" : "test.failed", { text: errorText(answer.error) }), "--red-ui-text-color-error"];
+      var sentence = (answer) => answer.ok ? [t("test.ok", answer), "--red-ui-text-color-success"] : [
+        t(answer.reached ? "test.reached" : "test.failed", { text: errorText(answer.error) }),
+        "--red-ui-text-color-error"
+      ];
       var httpError = (xhr) => {
         const error = xhr.responseJSON && xhr.responseJSON.error || null;
         if (error) return { ok: false, error };
@@ -2105,7 +2134,10 @@ var nxlineSerialPlc = (() => {
       var EXAMPLES = {
         object: (rows, device) => ({ topic: device, payload: Object.fromEntries(rows) }),
         message: ([[name, one]]) => ({ topic: name, payload: one }),
-        envelope: ([[name, one]]) => ({ topic: name, payload: { value: one, quality: "good", timestamp: 17672256e5, unit: "" } }),
+        envelope: ([[name, one]]) => ({
+          topic: name,
+          payload: { value: one, quality: "good", timestamp: 17672256e5, unit: "" }
+        }),
         list: (rows, device) => ({
           topic: device,
           payload: rows.map(([name, one]) => ({ name, value: one, quality: "good", timestamp: 17672256e5, unit: "" }))

@@ -69,7 +69,9 @@ const SAMPLES = { bool: true, float32: 21.5 }
 const sampleOf = (item, index) => {
   const one = item.type.name.startsWith('string') ? 'ABC' : (SAMPLES[item.type.name] ?? 120 + index)
   const plain = one === true && value('booleans') === 'number' ? 1 : one
-  return item.range && value('ranges') === 'array' ? Array.from({ length: Math.min(item.count, 3) }, () => plain) : plain
+  return item.range && value('ranges') === 'array'
+    ? Array.from({ length: Math.min(item.count, 3) }, () => plain)
+    : plain
 }
 
 const singles = item =>
@@ -78,7 +80,10 @@ const singles = item =>
 const EXAMPLES = {
   object: (rows, device) => ({ topic: device, payload: Object.fromEntries(rows) }),
   message: ([[name, one]]) => ({ topic: name, payload: one }),
-  envelope: ([[name, one]]) => ({ topic: name, payload: { value: one, quality: 'good', timestamp: 1767225600000, unit: '' } }),
+  envelope: ([[name, one]]) => ({
+    topic: name,
+    payload: { value: one, quality: 'good', timestamp: 1767225600000, unit: '' }
+  }),
   list: (rows, device) => ({
     topic: device,
     payload: rows.map(([name, one]) => ({ name, value: one, quality: 'good', timestamp: 1767225600000, unit: '' }))

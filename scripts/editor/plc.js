@@ -58,7 +58,12 @@ const lineProperties = id => {
 
 const plcProperties = node => {
   const fields = ['name', 'line', 'station', 'steps', 'timeout', 'masterIds']
-  return { id: node.id, ...Object.fromEntries(fields.map(name => [name, value(name)])), areas: areaRows(), tags: tagRows() }
+  return {
+    id: node.id,
+    ...Object.fromEntries(fields.map(name => [name, value(name)])),
+    areas: areaRows(),
+    tags: tagRows()
+  }
 }
 
 const showResult = (text, colour) =>
@@ -70,7 +75,10 @@ const showResult = (text, colour) =>
 const sentence = answer =>
   answer.ok
     ? [t('test.ok', answer), '--red-ui-text-color-success']
-    : [t(answer.reached ? 'test.reached' : 'test.failed', { text: errorText(answer.error) }), '--red-ui-text-color-error']
+    : [
+        t(answer.reached ? 'test.reached' : 'test.failed', { text: errorText(answer.error) }),
+        '--red-ui-text-color-error'
+      ]
 
 const httpError = xhr => {
   const error = (xhr.responseJSON && xhr.responseJSON.error) || null

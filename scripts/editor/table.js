@@ -77,7 +77,17 @@ const addTag = (container, data, context) => {
   const judge = () => judgeTag(read(), message, context)
   container
     .append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit))
-    .append(flex(fields.scale, fields.offset, fields.deadband, fields.wordOrder, fields.min, fields.max, fields.writable.label))
+    .append(
+      flex(
+        fields.scale,
+        fields.offset,
+        fields.deadband,
+        fields.wordOrder,
+        fields.min,
+        fields.max,
+        fields.writable.label
+      )
+    )
     .append(message)
     .on('input change', judge)
   container.data('nxline', { read, judge })
@@ -92,7 +102,9 @@ const addTag = (container, data, context) => {
  */
 const tagTable = (list, tags, context) => {
   list.editableList({
-    header: $('<div>').css({ padding: '2px 6px', color: 'var(--red-ui-secondary-text-color)' }).text(t('editor.tagHeader')),
+    header: $('<div>')
+      .css({ padding: '2px 6px', color: 'var(--red-ui-secondary-text-color)' })
+      .text(t('editor.tagHeader')),
     addItem: (container, _index, data) => addTag(container, data, context),
     addButton: t('editor.addTag'),
     removable: true,
@@ -175,7 +187,9 @@ const addArea = (container, data, changed) => {
     changed()
   }
   container
-    .append(flex(fields.area, fields.base, fields.words, fields.as, fields.note, fields.confirmed.label, fields.remove.label))
+    .append(
+      flex(fields.area, fields.base, fields.words, fields.as, fields.note, fields.confirmed.label, fields.remove.label)
+    )
     .append(message)
     .on('input change', judge)
   container.data('nxline', { read, judge })

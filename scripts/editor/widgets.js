@@ -57,7 +57,9 @@ const suggest = (field, offers) =>
           label: $('<span>')
             .text(offer.value)
             .append(
-              $('<span>').css({ color: 'var(--red-ui-secondary-text-color)', marginLeft: '8px' }).text(offer.hint || '')
+              $('<span>')
+                .css({ color: 'var(--red-ui-secondary-text-color)', marginLeft: '8px' })
+                .text(offer.hint || '')
             )
         }))
       )

@@ -1,0 +1,134 @@
+'use strict'
+const assert = require('node:assert/strict')
+const fs = require('node:fs')
+const path = require('node:path')
+const { PROPERTIES } = require('../../nodes/properties')
+const { build, TARGET } = require('../../scripts/build-editor')
+const { TYPES, NODES, html, loadDialogs } = require('./dialogs')
+
+describe('node dialogs', () => {
+  it('resources/editor.js is what scripts/build-editor.js makes', () => {
+    assert.equal(fs.readFileSync(TARGET, 'utf8'), build(), 'run: node scripts/build-editor.js')
+  })
+
+  for (const type of TYPES) {
+    it(`${type}: the defaults of the dialog are those of the run time`, () => {
+      const { outputs, ...defaults } = loadDialogs().types[type].defaults
+      assert.deepEqual(Object.keys(defaults).sort(), Object.keys(PROPERTIES[type]).sort())
+      for (const [name, row] of Object.entries(PROPERTIES[type])) {
+        assert.equal(JSON.stringify(defaults[name].value), JSON.stringify(row.fallback), name)
+      }
+      assert.equal(outputs?.value, type === 'nx-write' ? 1 : undefined)
+    })
+
+    it(`${type}: a field for each property, a label for each field, no foreign colours or styles`, () => {
+      const text = html(type)
+      for (const [name, row] of Object.entries(PROPERTIES[type])) {
+        if (row.kind !== 'list') assert.match(text, new RegExp(`id="node-(config-)?input-${name}"`), name)
+      }
+      assert.doesNotMatch(text, /<style|(color|background)[^;"]*:\s*(#|rgb|white|black|grey|red)/i)
+      assert.match(text, /<script src="resources\/@nxline\/node-red-serial-plc\/editor\.js"><\/script>/)
+      assert.doesNotMatch(text, /data-i18n="(?!\[)[^"]*"[^>]*>[^<]*[^\s<]/, 'a text outside the catalogue')
+    })
+  }
+
+  it('the select boxes offer what the run time knows', () => {
+    for (const type of TYPES) {
+      for (const [name, row] of Object.entries(PROPERTIES[type])) {
+        if (row.kind !== 'choice') continue
+        const select = new RegExp(`<select id="node-(?:config-)?input-${name}"[^>]*>([\\s\\S]*?)</select>`).exec(
+          html(type)
+        )
+        const offered = [...select[1].matchAll(/<option value="([^"]*)"/g)].map(([, value]) => value)
+        assert.deepEqual(offered.sort(), [...row.known].sort(), `${type}.${name}`)
+      }
+    }
+  })
+
+  it('palette: category, labels, icons that are there', () => {
+    const { types } = loadDialogs()
+    assert.equal(types['nx-read'].category, 'serial PLC')
+    assert.equal(types['nx-write'].category, 'serial PLC')
+    assert.equal(types['nx-read'].paletteLabel, 'NX PLC read')
+    assert.equal(types['nx-write'].paletteLabel, 'NX PLC write')
+    for (const type of ['nx-read', 'nx-write']) {
+      assert.ok(fs.existsSync(path.join(NODES, 'icons', types[type].icon)))
+    }
+  })
+})
+
+describe('validators', () => {
+  const line = { id: 'line', type: 'plc-line', transport: 'serial', path: '/dev/ttyS9' }
+  const plc = {
+    id: 'plc',
+    type: 'nx-config',
+    line: 'line',
+    name: 'Oven',
+    station: '1',
+    access: 'read',
+    tags: [{ name: 'level', address: 'W10', type: 'float32' }]
+  }
+  const { types } = loadDialogs({ nodes: [line, plc] })
+  const judge = (type, name, value, node = {}) =>
+    types[type].defaults[name].validate.call({ id: 'own', ...node }, value, {})
+
+  const cases = [
+    ['plc-line', 'baudRate', '9600', true],
+    ['plc-line', 'baudRate', 'fast', /number is needed: 50 to 4000000/],
+    ['plc-line', 'baudRate', '${SPEED}', true],
+    ['plc-line', 'path', '', /needed/],
+    ['plc-line', 'path', '', true, { transport: 'tcp' }],
+    ['plc-line', 'host', '', /needed/, { transport: 'tcp' }],
+    ['plc-line', 'host', '', true, { transport: 'serial' }],
+    ['plc-line', 'port', '70000', /1 to 65535/, { transport: 'tcp' }],
+    ['plc-line', 'gap', '2.5', true],
+    ['plc-line', 'queueLimit', '2.5', /whole number/],
+    ['nx-config', 'station', '', /needed/],
+    ['nx-config', 'station', 0, true],
+    ['nx-config', 'station', '191', true],
+    ['nx-config', 'station', '192', /0 to 191, or 255/],
+    ['nx-config', 'station', '254', /0 to 191, or 255/],
+    ['nx-config', 'station', '255', true],
+    ['nx-config', 'station', '${STATION}', true],
+    ['nx-config', 'station', '1', /Oven on this line has this station number/, { line: 'line' }],
+    ['nx-config', 'station', '1', true, { line: 'another' }],
+    ['nx-config', 'masterIds', 'E2..E9', true],
+    ['nx-config', 'masterIds', 'E2', true],
+    ['nx-config', 'masterIds', 'FF', /255|FF/],
+    ['nx-config', 'writableRanges', 'M0..M15, K100.3', true],
+    ['nx-config', 'writableRanges', 'M0..M15, K900', /outside its area/],
+    ['nx-config', 'areas', [], true],
+    ['nx-config', 'areas', [{ area: 'W', confirmed: true }], true],
+    ['nx-config', 'areas', [{ area: 'M', base: '0x1C8' }], /overlaps/],
+    ['nx-config', 'tags', plc.tags, true],
+    ['nx-config', 'tags', [{ name: '1st', address: 'M0' }], /not valid/],
+    ['nx-config', 'tags', [{ name: 'one', address: 'M128' }], /outside its area/],
+    ['nx-read', 'interval', '0', true],
+    ['nx-read', 'interval', '-1', /0 to 86400000/],
+    ['nx-read', 'items', [], /at least one/],
+    ['nx-read', 'items', [], true, { itemsType: 'msg' }],
+    ['nx-read', 'items', ['M0', 'K127.12', 'level', '${ITEM}'], true, { plc: 'plc' }],
+    ['nx-read', 'items', ['M0', 'K127.16'], /0 to 15/, { plc: 'plc' }],
+    ['nx-write', 'target', '', true, { plc: 'plc' }],
+    ['nx-write', 'target', 'M0', /Oven is read-only/, { plc: 'plc' }],
+    ['nx-write', 'target', 'nothing', /not an address/, { plc: 'plc' }]
+  ]
+  for (const [type, name, value, expected, node] of cases) {
+    it(`${type}.${name} ${JSON.stringify(value)}${node ? ` with ${JSON.stringify(node)}` : ''}`, () => {
+      const verdict = judge(type, name, value, node)
+      if (expected === true) assert.equal(verdict, true)
+      else assert.match(String(verdict), expected)
+    })
+  }
+
+  it('declare two parameters, else the editor does not show the reason', () => {
+    for (const { defaults } of Object.values(types)) {
+      for (const { validate } of Object.values(defaults)) if (validate) assert.equal(validate.length, 2)
+    }
+  })
+
+  it('the reasons come in Korean, too', () => {
+    const korean = loadDialogs({ language: 'ko' }).types
+    assert.match(korean['nx-config'].defaults.station.validate.call({}, '', {}), /필수/)
+  })
+})

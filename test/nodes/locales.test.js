@@ -1,0 +1,110 @@
+'use strict'
+const assert = require('node:assert/strict')
+const fs = require('node:fs')
+const path = require('node:path')
+const { CODES } = require('../../lib/error')
+const { statusOf } = require('../../nodes/status')
+const { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, lookUp } = require('./dialogs')
+
+const leaves = (tree, prefix = '') =>
+  Object.entries(tree).flatMap(([key, value]) =>
+    typeof value === 'string' ? [prefix + key] : leaves(value, `${prefix}${key}.`)
+  )
+
+const sources = folder =>
+  fs
+    .readdirSync(path.join(ROOT, folder))
+    .filter(name => name.endsWith('.js'))
+    .map(name => fs.readFileSync(path.join(ROOT, folder, name), 'utf8'))
+    .join('\n')
+
+const quoted = (text, pattern) => [...text.matchAll(pattern)].map(([, found]) => found)
+
+/** Keys of the node's own dialog. */
+const ownKeys = type => [
+  ...quoted(html(type), /data-i18n="(?:\[\w+\])?([^"]+)"/g),
+  ...quoted(html(type), /_\(\s*'([\w-]+\.[\w.]+)'/g),
+  ...quoted(html(type), /'(nx-write\.port\.\w+)'/g)
+]
+
+/** Keys of what the dialogs share. */
+const sharedKeys = () => {
+  const editor = sources('scripts/editor')
+  const columns = quoted(editor, /\b(?:cell|pick|tick)\('(\w+)'/g)
+  const problems = quoted(sources('nodes'), /problem: '(\w+)'/g)
+  return [
+    ...quoted(editor, /'((?:tab|editor|problem|test)\.\w+)'/g),
+    ...columns.flatMap(name => [`column.${name}`, `tooltip.${name}`]),
+    ...problems.map(name => `problem.${name}`)
+  ]
+}
+
+/** Every status that there can be. */
+const statusKeys = () => {
+  const codes = [undefined, ...Object.keys(CODES)]
+  const states = [
+    {},
+    { phase: 'writing' },
+    { phase: 'read', count: 1 },
+    { phase: 'read', count: 3 },
+    { phase: 'read', count: 3, bad: 1 },
+    ...codes.flatMap(code => [
+      { fault: { code } },
+      { phase: 'read', count: 2, bad: 2, code },
+      { phase: 'failed', code },
+      { line: { state: 'waiting', reason: { code } } },
+      ...['confirmed', 'unknown', 'refused', 'failed'].map(outcome => ({ phase: 'written', outcome, code }))
+    ]),
+    ...['opening', 'jammed', 'waiting'].map(state => ({ line: { state } }))
+  ]
+  return states.map(state => `status.${statusOf(state).key}`)
+}
+
+describe('locales', () => {
+  for (const type of TYPES) {
+    for (const language of LANGUAGES) {
+      it(`${type}, ${language}: every key that is used is there, and every key that is there is used`, () => {
+        const used = type === 'plc-line' ? [...ownKeys(type), ...sharedKeys(), ...statusKeys()] : ownKeys(type)
+        const known = leaves(catalogue(language, type)).filter(key => !key.startsWith('error.'))
+        assert.deepEqual([...new Set(used)].sort(), known.sort())
+      })
+
+      it(`${type}, ${language}: help with its sections`, () => {
+        const help = fs.readFileSync(path.join(NODES, 'locales', language, `${type}.html`), 'utf8')
+        assert.match(help, new RegExp(`data-help-name="${type}"`))
+        assert.match(help, />\s*<p>[^<]{20,}/, 'the first paragraph is the tooltip')
+        const wanted = type.startsWith('nx-r') || type.startsWith('nx-w') ? 4 : 2
+        assert.equal([...help.matchAll(/<h3>/g)].length, wanted)
+      })
+    }
+
+    it(`${type}: both languages fill in the same values`, () => {
+      const [english, korean] = LANGUAGES.map(language => catalogue(language, type))
+      const marks = text => [...text.matchAll(/__\w+__/g)].map(String).sort()
+      for (const key of leaves(english)) {
+        // a message says its number only where the language needs it
+        assert.deepEqual(marks(lookUp(korean, key)), marks(lookUp(english, key)), key)
+      }
+    })
+  }
+
+  it('errors in Korean have a row in the list of codes, and use its details', () => {
+    const { error = {} } = catalogue('ko', 'plc-line')
+    for (const [code, text] of Object.entries(error)) {
+      assert.ok(CODES[code], code)
+      for (const [, name] of text.matchAll(/__(\w+)__/g))
+        assert.match(CODES[code].join(' '), new RegExp(`\\{${name}\\}`), code)
+    }
+  })
+
+  it('a status is shorter than 20 characters in both languages, with SIM before it', () => {
+    const { fitted } = require('../../nodes/status')
+    for (const language of LANGUAGES) {
+      for (const [key, text] of Object.entries(catalogue(language, 'plc-line').status)) {
+        const filled = text.replace(/__\w+__/g, '12')
+        assert.ok(filled.length < 20, `${language} ${key}: ${filled}`)
+        assert.ok(fitted(filled, true).length < 20)
+      }
+    }
+  })
+})

@@ -11,7 +11,7 @@ const { applyFault } = require('./faults')
  * @param {{ clock: any, baudRate?: number, bitsPerByte?: number, echo?: boolean, collisions?: boolean, chunk?: number | (() => number),
  *   faults?: import('./faults').Faults | null, random?: import('./random').Random }} options
  *   echo: a master hears itself (2-wire adapter) · chunk: bytes that arrive at once (16, as from a UART), or a function ·
- *   collisions: false = the line forgives them
+ *   collisions: two who send at once spoil both (default); false: the second one waits until the line is free
  * @returns {Wire}
  */
 function createWire(options) {
@@ -34,11 +34,12 @@ function createWire(options) {
     byteMs: wire.byteMs,
     counts: wire.counts,
     add: station => void wire.parties.add(createParty(wire, station)),
+    remove: number => partiesOf(wire, number).forEach(party => wire.parties.delete(party)),
     stations: () => [...wire.parties].filter(({ station }) => station).map(({ station }) => station),
     setOff: (number, off) => partiesOf(wire, number).forEach(party => (party.off = off)),
     connect: handlers => connect(wire, handlers),
     noise: bytes => transmit(wire, { busyUntil: 0 }, { bytes, at: wire.clock.now() }),
-    idleAt: () => wire.active.reduce((latest, { end }) => Math.max(latest, end), 0),
+    idleAt: () => idleAt(wire),
     setEcho: on => void (wire.echo = on),
     unplug() {
       wire.plugged = false
@@ -49,6 +50,8 @@ function createWire(options) {
     plug: () => void (wire.plugged = true)
   }
 }
+
+const idleAt = ({ active }) => active.reduce((latest, { end }) => Math.max(latest, end), 0)
 
 const partiesOf = (wire, number) => [...wire.parties].filter(({ station }) => station?.station === number)
 
@@ -111,22 +114,19 @@ function connect(wire, handlers) {
 /** Puts bytes on the wire, behind what the same sender still has to send. */
 function transmit(wire, from, { bytes, at }) {
   if (bytes.length === 0) return
-  const start = Math.max(at, from.busyUntil)
+  const start = Math.max(at, from.busyUntil, wire.collisions ? 0 : idleAt(wire))
   const end = start + bytes.length * wire.byteMs
   const sending = { from, bytes: Buffer.from(bytes), start, end, told: 0 }
   from.busyUntil = end
   wire.counts.frames++
   wire.counts.bytes += bytes.length
-  if (wire.active.length > 0) collide(wire, sending)
+  if (wire.collisions && wire.active.length > 0) collide(wire, sending)
   wire.active.push(sending)
   schedule(wire, sending)
 }
 
 /** Where two senders overlap, both bytes are spoilt; what was heard before stays heard. */
 function collide(wire, sending) {
-  const now = wire.clock.now()
-  wire.active = wire.active.filter(({ end, told, bytes }) => end > now || told < bytes.length)
-  if (!wire.collisions) return
   for (const other of wire.active) {
     if (other.from === sending.from || other.end <= sending.start || sending.end <= other.start) continue
     wire.counts.collisions++
@@ -173,6 +173,7 @@ function arrive(wire, sending) {
  * @property {number} byteMs wire time of one byte
  * @property {{ frames: number, bytes: number, collisions: number }} counts
  * @property {(station: any) => void} add a station (nx-plc.js)
+ * @property {(number: number) => void} remove what it still has to answer goes out
  * @property {() => any[]} stations
  * @property {(number: number, off: boolean) => void} setOff a station without power
  * @property {(handlers: { data: (bytes: Buffer) => void, closed: () => void }) => { write: (bytes: Buffer) => void, close: () => void }} connect

@@ -24,13 +24,25 @@ const upToError = info => info <= 5
  */
 function expectedAnswers(query, { steps = 2, phase = 'query', nonStandardAck = false } = {}) {
   const row = functionOf(query.ask)
+  const length = answerInfoLength(query)
+  // one list serves all queries that differ in their addresses alone
+  const key = (((row.two * 512 + length) * 8 + steps) * 2 + Number(phase === 'query')) * 2 + Number(nonStandardAck)
+  let list = known.get(key)
+  if (!list) known.set(key, (list = listAnswers(row, length, { steps, phase, nonStandardAck })))
+  return list
+}
+
+/** @type {Map<number, Expected[]>} */
+const known = new Map()
+
+function listAnswers(row, length, { steps, phase, nonStandardAck }) {
   const code = answerCode(row, steps)
   /** @type {Expected[]} */
   const list = []
   const add = (kind, fn, length, accepts) => list.push({ kind, fn, length, accepts })
   if (steps === 4 && phase === 'query') add('acknowledge', ACKNOWLEDGE, 1, isZero)
   else {
-    add('values', code, answerInfoLength(query), any)
+    add('values', code, length, any)
     // the manual prints $A2 as the answer to every write
     const printed = answerCode(functionOf('writeBits'), steps)
     if (nonStandardAck && !row.repeatable && code !== printed) add('nonStandard', printed, 1, isZero)
@@ -70,8 +82,13 @@ function readAnswer(frame, query, options = {}) {
  * @returns {Expected | undefined}
  */
 function classify(fn, info, expected) {
-  const same = expected.filter(each => each.fn === fn && each.length === info.length)
-  return same.find(each => each.accepts !== any && each.accepts(info[0])) ?? same.find(each => each.accepts === any)
+  let values
+  for (const each of expected) {
+    if (each.fn !== fn || each.length !== info.length) continue
+    if (each.accepts === any) values = each
+    else if (each.accepts(info[0])) return each
+  }
+  return values
 }
 
 function plcError(number, { station, query }) {

@@ -1,7 +1,7 @@
 'use strict'
 const { PlcError } = require('../../error')
 const { readAnswer } = require('./answer')
-const { decodeFrame } = require('./frame')
+const { openFrame } = require('./frame')
 const { functionOf } = require('./functions')
 const { DEFAULT_IDS, masterIds } = require('./ids')
 const { check, LIMITS } = require('./limits')
@@ -197,8 +197,7 @@ function* exchange(talk, master, phase) {
   if (talk.reached === 'nothing') talk.reached = 'query'
   const bytes = yield { send, match, timeout, gap }
   talk.reached = 'answer'
-  const frame = decodeFrame(bytes)
-  if (!frame) throw new PlcError('BAD_ANSWER', { station, reason: 'no complete frame' })
+  const frame = openFrame(bytes)
   facts.seenStation = frame.from
   const answer = readAnswer(frame, query, { steps, phase, nonStandardAck, station })
   if (answer.nonStandard) facts.nonStandard = true

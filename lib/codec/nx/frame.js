@@ -74,9 +74,30 @@ function crcFits(bytes, start, length) {
  */
 function decodeFrame(bytes, start = 0) {
   const length = frameLength(bytes, start)
-  if (length === 0 || bytes.length - start < length || !crcFits(bytes, start, length)) return null
+  return length > 0 && bytes.length - start >= length && crcFits(bytes, start, length) ? openFrame(bytes, start) : null
+}
+
+/**
+ * The same for a frame that a match has accepted: its length and its CRC are not looked at again.
+ * @param {Uint8Array} bytes
+ * @param {number} [start]
+ * @returns {Frame & { length: number }}
+ */
+function openFrame(bytes, start = 0) {
+  const length = frameLength(bytes, start)
   const info = Buffer.from(bytes.buffer, bytes.byteOffset + start + HEADER, length - OVERHEAD)
   return { to: bytes[start], from: bytes[start + 1], fn: bytes[start + 2], info, length }
 }
 
-module.exports = { SHORTEST, LONGEST, MOST_INFO, HEADER, OVERHEAD, encodeFrame, frameLength, crcFits, decodeFrame }
+module.exports = {
+  SHORTEST,
+  LONGEST,
+  MOST_INFO,
+  HEADER,
+  OVERHEAD,
+  encodeFrame,
+  frameLength,
+  crcFits,
+  decodeFrame,
+  openFrame
+}

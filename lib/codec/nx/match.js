@@ -31,8 +31,8 @@ const LAST_STATION = 191
 function answerTo(query, options) {
   const { station, master, seenStation, sent, late = [] } = options
   const expected = expectedAnswers(query, options)
-  const functions = new Set(expected.map(each => each.fn))
-  const headers = new Set(expected.map(each => (each.fn << 8) | (each.length & 0xff)))
+  const isFunction = fn => expected.some(each => each.fn === fn)
+  const isHeader = (fn, length) => expected.some(each => each.fn === fn && (each.length & 0xff) === length)
   const isStation = id =>
     station === GLOBAL_STATION && seenStation === undefined
       ? id === GLOBAL_STATION || id <= LAST_STATION
@@ -43,9 +43,9 @@ function answerTo(query, options) {
     const left = bytes.length - at
     if (bytes[at] === master) {
       if (left > 1 && !isStation(bytes[at + 1])) return 'nothing'
-      if (left > 2 && !functions.has(bytes[at + 2])) return 'nothing'
+      if (left > 2 && !isFunction(bytes[at + 2])) return 'nothing'
       if (left < HEADER) return 'begins'
-      return headers.has((bytes[at + 2] << 8) | bytes[at + 3]) ? 'ours' : 'nothing'
+      return isHeader(bytes[at + 2], bytes[at + 3]) ? 'ours' : 'nothing'
     }
     if (sent && startsLike(bytes, at, sent)) return left < HEADER ? 'begins' : 'other'
     return late.includes(bytes[at]) ? lookLate(bytes, at, isStation) : 'nothing'

@@ -16,17 +16,16 @@ const settings = userDir => ({
   uiHost: HOST,
   httpAdminRoot: '/',
   httpNodeRoot: '/',
-  credentialSecret: 'demo',
+  credentialSecret: false,
   telemetry: { enabled: false, updateNotification: false },
   diagnostics: { enabled: false, ui: false },
-  logging: { console: { level: 'warn', metrics: false, audit: false } },
+  logging: { console: { level: 'error', metrics: false, audit: false } },
   functionExternalModules: false,
   editorTheme: {
     tours: false,
     page: { title: 'Serial PLC demo' },
     header: { title: 'Serial PLC demo' },
     palette: { catalogues: [], categories: ['serial_PLC', 'dashboard_2', 'common', 'function', 'network'] },
-    projects: { enabled: false },
     multiplayer: { enabled: false }
   }
 })

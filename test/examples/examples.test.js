@@ -32,9 +32,9 @@ describe('examples', function () {
     port = await freePort(0)
     broker = await startBroker(port)
     client = await mqtt.connectAsync(broker.url)
-    client.on('message', (topic, bytes, packet) =>
-      heard.push({ topic, value: JSON.parse(bytes), retain: packet.retain })
-    )
+    client.on('message', (topic, bytes, packet) => {
+      if (bytes.length) heard.push({ topic, value: JSON.parse(bytes.toString()), retain: packet.retain })
+    })
     red = await startNodeRed()
   })
   after(async () => {
@@ -43,6 +43,7 @@ describe('examples', function () {
     await broker?.close()
   })
   beforeEach(async () => {
+    await client.unsubscribeAsync(['plant/furnace/#', 'plant/furnace/answer/#', 'plant/furnace/state/#'])
     heard.length = 0
     red.forget()
   })
@@ -117,7 +118,7 @@ describe('examples', function () {
       items.map(it => [it.name, it.quality]),
       [
         ['K0', 'good'],
-        ['M0.0', 'good']
+        ['M0_0', 'good']
       ]
     )
   })
@@ -157,10 +158,11 @@ describe('examples', function () {
       stations.silence(true)
       const on = await red.next(alarm, value => value.alarm === true)
       assert.equal(on.code, 'TIMEOUT')
+      red.forget()
       stations.silence(false)
       await red.next(alarm, value => value.alarm === false, 20000)
       const states = red.debug.filter(it => it.id === alarm).map(it => it.value.alarm)
-      assert.deepEqual(states.slice(-2), [true, false])
+      assert.deepEqual(states, [false, true, false], 'one at the start, one alarm, one all-clear')
     } finally {
       await red.deploy([])
       await stations.close()
@@ -196,9 +198,15 @@ describe('examples', function () {
     await red.next(find(flow, 'debug', 'filled').id, value => value.outcome === 'confirmed')
     await red.inject(find(flow, 'inject', 'Go').id)
     assert.equal(await red.next(result), 'OK')
-    red.forget()
-    await deploy(load('09'), node => (node.type === 'nx-config' ? { ...node, access: 'read' } : node))
-    await red.inject(find(flow, 'inject', 'Go').id)
-    assert.equal(await red.next(result), 'FAIL')
+    const fails = async (edit, why) => {
+      red.forget()
+      await deploy(load('09'), edit)
+      await red.inject(find(flow, 'inject', 'Go').id)
+      assert.equal(await red.next(result), 'FAIL', why)
+    }
+    const wrongHalf = JSON.stringify(flow).replace('source[[64..127]]', 'source[[63..126]]')
+    const other = JSON.parse(wrongHalf).find(node => node.name === 'second half')
+    await fails(node => (node.id === other.id ? other : node), 'K64..K127 hold something else')
+    await fails(node => (node.type === 'nx-config' ? { ...node, access: 'read' } : node), 'it may not write')
   })
 })

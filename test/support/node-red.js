@@ -32,7 +32,6 @@ const SETTINGS = {
   editorTheme: {
     tours: false,
     palette: { catalogues: [] },
-    projects: { enabled: false },
     multiplayer: { enabled: false }
   }
 }
@@ -150,6 +149,11 @@ const countIn = child =>
     child.send('count')
   })
 
+const ignoreMissing = error => {
+  if (!/: 404 /.test(error.message)) throw error
+  return false
+}
+
 function api(url) {
   const ask = async (method, where, body, headers = {}) => {
     const answer = await fetch(url + where, {
@@ -170,7 +174,9 @@ function api(url) {
     ask,
     /** @param {object[]} flows @param {'full'|'nodes'|'flows'|'reload'} [type] */
     deploy: (flows, type = 'full') => ask('POST', '/flows', { flows }, { 'Node-RED-Deployment-Type': type }),
-    inject: id => ask('POST', `/inject/${id}`, {})
+    // a deploy answers before the new nodes have been made
+    inject: id =>
+      until(() => ask('POST', `/inject/${id}`, {}).then(() => true, ignoreMissing), { what: `inject ${id}` })
   }
 }
 
@@ -187,7 +193,8 @@ function watching(comms) {
     /** The next message of a debug node (or of any) that satisfies `is`, after the last `forget`. */
     next: (id, is = _value => true, patience = 10000) =>
       until(() => comms.debug.slice(taken).find(it => (!id || it.id === id) && is(it.value)), {
-        what: () => `a message of ${id}; seen: ${JSON.stringify(comms.debug.slice(-5).map(it => [it.id, it.value]))}`,
+        what: () =>
+          `a message of ${id}; seen: ${JSON.stringify(comms.debug.slice(-5).map(it => [it.id, it.value])).slice(0, 1500)}`,
         patience
       }).then(it => it.value)
   }

@@ -1,0 +1,178 @@
+'use strict'
+
+/**
+ * Redeploys and reconnects by the thousand, in a real Node-RED, on a real (virtual) serial port, over TCP and simulated: nothing may
+ * be left behind, and values must flow again by themselves. Run by test/system and by `npm run endurance -- redeploys`.
+ */
+
+const assert = require('node:assert/strict')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+const { createNxLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
+const { startNodeRed, until } = require('./node-red.js')
+
+const LINES = ['serial', 'tcp', 'simulated']
+const DEPLOY_MS = 2000
+
+const reading = (line, extra) => ({
+  plc: `plc-${line}`,
+  items: ['M0..M9', 'K0'],
+  interval: 50,
+  format: 'object',
+  ...extra
+})
+
+/** Per line: the line, a PLC, a reader with a debug node, a writer. `turn` changes one property of each kind of node now and then. */
+function flowOf(settings, { turn = 0, without = '' } = {}) {
+  const tab = { id: 'tab', type: 'tab', label: 'endurance' }
+  const each = LINES.flatMap(line => [
+    { id: `line-${line}`, type: 'plc-line', name: line, ...settings[line], queueLimit: 500 + (turn & 2) },
+    {
+      id: `plc-${line}`,
+      type: 'nx-config',
+      name: line,
+      line: `line-${line}`,
+      station: 1,
+      access: 'write',
+      attempts: 3 - (turn & 1)
+    },
+    {
+      id: `read-${line}`,
+      type: 'nx-read',
+      z: 'tab',
+      ...reading(line, { interval: 50 + (turn & 4) }),
+      wires: [[`debug-${line}`]]
+    },
+    { id: `write-${line}`, type: 'nx-write', z: 'tab', plc: `plc-${line}`, target: 'K0', wires: [[]] },
+    {
+      id: `inject-${line}`,
+      type: 'inject',
+      z: 'tab',
+      repeat: '0.2',
+      props: [{ p: 'payload', v: '7', vt: 'num' }],
+      wires: [[`write-${line}`]]
+    },
+    {
+      id: `debug-${line}`,
+      type: 'debug',
+      z: 'tab',
+      active: true,
+      tosidebar: true,
+      complete: 'payload',
+      targetType: 'msg',
+      wires: []
+    }
+  ])
+  return [tab, ...each].map(node => (node.id === without ? { ...node, d: true } : node))
+}
+
+/** What one round does; the turn decides. */
+const KINDS = [
+  { type: 'full', change: _turn => ({}) },
+  { type: 'nodes', change: turn => ({ turn }) },
+  { type: 'flows', change: turn => ({ turn }) },
+  { type: 'nodes', change: turn => ({ turn, without: `read-${LINES[turn % 3]}` }) },
+  { type: 'reload', change: turn => ({ turn }) }
+]
+
+async function startLines() {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'endurance-'))
+  const wires = [1, 2].map(() => createNxLine({ stations: [1], baudRate: 115200, quiet: true }).wire)
+  const pty = serveOnPty({ wire: wires[0], link: path.join(folder, 'line') })
+  const tcp = await serveOnTcp({ wire: wires[1] })
+  const common = { baudRate: 115200 }
+  return {
+    pty,
+    tcp,
+    settings: {
+      serial: { ...common, transport: 'serial', path: pty.path() },
+      tcp: { ...common, transport: 'tcp', host: '127.0.0.1', port: tcp.port },
+      simulated: { ...common, transport: 'simulated' }
+    },
+    async close() {
+      pty.close()
+      await tcp.close()
+      fs.rmSync(folder, { recursive: true, force: true })
+    }
+  }
+}
+
+const total = counts => Object.values(counts).reduce((sum, number) => sum + number, 0)
+
+/** Is more open than at the start? Our own keep-alive connections to the admin API come and go: they get time to end. */
+const leftBehind = (now, start) =>
+  total(now.resources) > total(start.resources) ||
+  (now.resources.Timeout || 0) > (start.resources.Timeout || 0) ||
+  now.descriptors.length > start.descriptors.length ||
+  now.listeners > start.listeners
+
+/** Values of all lines, newer than now. */
+async function allFlow(red) {
+  red.forget()
+  await Promise.all(LINES.map(line => red.next(`debug-${line}`, value => value.K0 !== undefined, 15000)))
+}
+
+/**
+ * @param {{ rounds: number, red?: string, node?: string, product?: string, tell?: (text: string) => void }} options
+ * @returns {Promise<{ rounds: number, drops: number, unplugs: number, slowest: number, ms: number, before: object, after: object }>}
+ * @throws {import('node:assert').AssertionError} if something is left behind, does not come back or takes longer than 2 s
+ */
+async function redeploys({ rounds, tell = _text => {}, ...which }) {
+  const lines = await startLines()
+  const red = await startNodeRed({ ...which, probe: true, flow: [] }).catch(async error => {
+    await lines.close()
+    throw error
+  })
+  try {
+    await red.deploy(flowOf(lines.settings))
+    await allFlow(red)
+    await red.deploy([])
+    const before = await until(() => red.count(), { what: 'a count' })
+    const done = await rounded({ red, lines, rounds, tell })
+    await allFlow(red)
+    await red.deploy([])
+    assert.equal(await until(() => lines.tcp.connections() === 0, { what: 'TCP connections to end' }), true)
+    let after
+    await until(async () => !leftBehind((after = await red.count()), before), {
+      what: () => `everything to be closed: ${JSON.stringify({ before, after })}`,
+      patience: 30000,
+      every: 250
+    })
+    const ports = after.descriptors.filter(name => /pts|tty/.test(name))
+    assert.deepEqual(ports, [], 'no serial port stays open')
+    assert.ok(after.heap - before.heap < 40e6, `the heap grew from ${before.heap} to ${after.heap}`)
+    assert.equal(await red.stop(), 'ended', 'Node-RED ends by itself when it is asked to')
+    return { ...done, before, after }
+  } finally {
+    if (red.child.exitCode === null) await red.stop()
+    await lines.close()
+  }
+}
+
+async function rounded({ red, lines, rounds, tell }) {
+  const start = Date.now()
+  const done = { rounds: 0, drops: 0, unplugs: 0, slowest: 0, ms: 0 }
+  for (let turn = 1; turn <= rounds; turn++) {
+    const kind = KINDS[turn % KINDS.length]
+    const began = Date.now()
+    if (turn % 7 === 0) (done.drops++, lines.tcp.drop())
+    if (turn % 25 === 0) (done.unplugs++, lines.pty.unplug())
+    if (turn % 25 === 1) lines.pty.replug()
+    await red.deploy(flowOf(lines.settings, kind.change(turn)), kind.type)
+    done.rounds = turn
+    done.slowest = Math.max(done.slowest, Date.now() - began)
+    assert.ok(done.slowest < DEPLOY_MS, `deploy ${turn} (${kind.type}) took ${done.slowest} ms`)
+    if (turn % 100 === 0) {
+      lines.pty.replug()
+      await red.deploy(flowOf(lines.settings))
+      await allFlow(red)
+      tell(`${turn} deploys, slowest ${done.slowest} ms, all lines deliver`)
+    }
+  }
+  lines.pty.replug()
+  await red.deploy(flowOf(lines.settings))
+  return { ...done, ms: Date.now() - start }
+}
+
+module.exports = { redeploys }

@@ -35,14 +35,14 @@ function expectedAnswers(query, { steps = 2, phase = 'query', nonStandardAck = f
 /** @type {Map<number, Expected[]>} */
 const known = new Map()
 
-function listAnswers(row, length, { steps, phase, nonStandardAck }) {
+function listAnswers(row, infoLength, { steps, phase, nonStandardAck }) {
   const code = answerCode(row, steps)
   /** @type {Expected[]} */
   const list = []
   const add = (kind, fn, length, accepts) => list.push({ kind, fn, length, accepts })
   if (steps === 4 && phase === 'query') add('acknowledge', ACKNOWLEDGE, 1, isZero)
   else {
-    add('values', code, length, any)
+    add('values', code, infoLength, any)
     // the manual prints $A2 as the answer to every write
     const printed = answerCode(functionOf('writeBits'), steps)
     if (nonStandardAck && !row.repeatable && code !== printed) add('nonStandard', printed, 1, isZero)

@@ -89,7 +89,8 @@ const planReads = (points, limits) => {
       size: block => 2 * items(block)
     },
     frameCost: limits.frameCost ?? FRAME_COST,
-    ownCost: block => 3 + items(block) * (block.kind === 'bit' ? 1 : 2),
+    // the third byte is left out, so that a mixed request for one address is never the cheaper one
+    ownCost: block => 2 + items(block) * (block.kind === 'bit' ? 1 : 2),
     sharedCost: block => items(block) * (block.kind === 'bit' ? 3 : 4),
     partsOf
   })

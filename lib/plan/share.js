@@ -80,9 +80,12 @@ const share = (blocks, { mixed, frameCost, ownCost, sharedCost, partsOf }) => {
   const candidates = blocks.filter(small).sort((a, b) => mixed.size(a) - mixed.size(b) || a.start - b.start)
   const count = bestCount(candidates, { mixed, frameCost, ownCost, sharedCost })
   const chosen = new Set(candidates.slice(0, count))
+  const frames = pack([...chosen].flatMap(partsOf), mixed)
+  // the plain functions are the better proven ones
+  const alone = frames.filter(parts => parts.length === 1).flat()
   return {
-    own: blocks.filter(block => !chosen.has(block)),
-    shared: pack([...chosen].flatMap(partsOf), mixed)
+    own: [...blocks.filter(block => !chosen.has(block)), ...alone],
+    shared: frames.filter(parts => parts.length > 1)
   }
 }
 

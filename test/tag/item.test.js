@@ -129,8 +129,7 @@ describe('values of items', () => {
       [0, 0x3fc0],
       [0, 0]
     ])
-    for (const value of [1, [1, 2], [1, 2, 3, 4], [1, , 3], [1, null, 3]]) {
-      // eslint-disable-line no-sparse-arrays
+    for (const value of [1, [1, 2], [1, 2, 3, 4], new Array(3), [1, null, 3]]) {
       assert.throws(() => encodeValue(item('K0..K2'), value), code('BAD_VALUE'))
     }
     assert.throws(() => encodeValue(item('K0'), [1]), code('BAD_VALUE'))

@@ -1,0 +1,209 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const fc = require('fast-check')
+const { check } = require('../../lib/codec/nx/limits')
+const { planReads } = require('../../lib/plan')
+
+const LIMITS = {
+  readBits: 255,
+  readWords: 128,
+  readMixed: 128,
+  writeBits: 254,
+  writeWords: 64,
+  writeMixed: 85,
+  info: 256
+}
+const word = (address, count = 1) => ({ kind: 'word', address, count })
+const bit = address => ({ kind: 'bit', address, count: 1 })
+const words = (from, count) => Array.from({ length: count }, (_, at) => word(from + at))
+const shape = requests =>
+  requests.map(({ ask, base, count, addresses }) =>
+    addresses ? `${ask} ${addresses.map(each => each.kind[0] + each.address).join(' ')}` : `${ask} ${base} ${count}`
+  )
+const plan = (points, limits = {}) => planReads(points, { ...LIMITS, ...limits })
+
+/** What a station would answer: the address itself stands for the value. */
+const answer = ({ base, count, addresses, ask }) =>
+  addresses
+    ? addresses.map(({ kind, address }) => kind[0] + address)
+    : Array.from({ length: count }, (_, at) => (ask === 'readBits' ? 'b' : 'w') + (base + at))
+
+/** Every point once, all of its addresses in one answer, at the place that is said. */
+const checkServed = (points, requests) => {
+  const served = new Map()
+  for (const request of requests) {
+    const values = answer(request)
+    for (const { point, at, count } of request.points) {
+      assert.ok(!served.has(point), `point ${point} twice`)
+      served.set(point, values.slice(at, at + count))
+    }
+  }
+  points.forEach(({ kind, address, count }, index) => {
+    const expected = Array.from({ length: count }, (_, at) => kind[0] + (address + at))
+    assert.deepEqual(served.get(index), expected)
+  })
+}
+
+const checkLimits = (requests, limits, bounds) => {
+  for (const request of requests) {
+    check(request, { ...LIMITS, ...limits })
+    if (!request.addresses) {
+      const size = request.ask === 'readBits' ? 16 : 1
+      const end = request.base + request.count
+      const groups = request.points.map(({ at, count }) => [request.base + at, request.base + at + count])
+      for (const bound of bounds.map(each => each * size)) {
+        const inside = bound > request.base && bound < end
+        assert.ok(!inside || groups.some(([from, to]) => from < bound && bound < to), `crosses ${bound}`)
+      }
+    }
+  }
+}
+
+describe('plan of reads', () => {
+  it('reads neighbours in one block', () => {
+    assert.deepEqual(shape(plan(words(0xc0, 128))), ['readWords 192 128'])
+    assert.deepEqual(shape(plan(words(0xc0, 129))), ['readWords 192 128', 'readWords 320 1'])
+    assert.deepEqual(shape(plan([bit(5), bit(3), bit(4)])), ['readBits 3 3'])
+    assert.deepEqual(shape(plan([])), [])
+  })
+
+  it('reads scattered ones in one mixed request, bits first', () => {
+    assert.deepEqual(shape(plan([word(447), bit(7164), word(0x210), word(447)])), ['readMixed b7164 w447 w528'])
+  })
+
+  it('keeps what a mixed request cannot hold in blocks', () => {
+    // bits of words after $3FF, words after $3FFF: the mark takes two bits of the address
+    assert.deepEqual(shape(plan([bit(0x4000), bit(0x3fff), word(0x3fff), word(0x4000)])), [
+      'readWords 16383 2',
+      'readBits 16383 2'
+    ])
+    assert.deepEqual(shape(plan([bit(0x4000), bit(0x3ffe), word(5)])), ['readBits 16384 1', 'readMixed b16382 w5'])
+  })
+
+  it('does not cross the end of an area', () => {
+    const points = [word(0x13f), word(0x140), bit(0x1400), bit(0x13ff)]
+    const requests = plan(points, { bounds: [0xc0, 0x140], readMixed: 0 })
+    assert.deepEqual(shape(requests).sort(), [
+      'readBits 5119 1',
+      'readBits 5120 1',
+      'readWords 319 1',
+      'readWords 320 1'
+    ])
+  })
+
+  it('does not tear a value of several words', () => {
+    const points = [...words(0, 127), word(127, 2)]
+    assert.deepEqual(shape(plan(points)), ['readWords 0 127', 'readWords 127 2'])
+    assert.throws(
+      () => plan([word(0, 129)]),
+      error => error.code === 'FRAME_TOO_LONG'
+    )
+    const apart = Array.from({ length: 100 }, (_, at) => word(at * 3, 2))
+    checkServed(apart, plan(apart))
+  })
+
+  it('large blocks stay blocks beside a mixed request', () => {
+    const requests = plan([...words(0, 100), word(300), word(400), bit(9000)])
+    assert.deepEqual(shape(requests), ['readWords 0 100', 'readMixed b9000 w300 w400'])
+  })
+
+  it('20,000 scattered words are planned at once', () => {
+    const points = Array.from({ length: 20000 }, (_, at) => word(at * 3))
+    const start = performance.now()
+    const requests = plan(points)
+    assert.ok(performance.now() - start < 2000)
+    checkServed(points, requests)
+  })
+
+  const anyPoint = fc.oneof(
+    fc.record({
+      kind: fc.constant('word'),
+      address: fc.integer({ min: 0, max: 400 }),
+      count: fc.integer({ min: 1, max: 4 })
+    }),
+    fc.record({
+      kind: fc.constant('word'),
+      address: fc.integer({ min: 0x3ff0, max: 0x400f }),
+      count: fc.constantFrom(1, 2)
+    }),
+    fc.record({ kind: fc.constant('bit'), address: fc.integer({ min: 0x3fe0, max: 0x4020 }), count: fc.constant(1) }),
+    fc.record({ kind: fc.constant('bit'), address: fc.integer({ min: 0, max: 300 }), count: fc.constant(1) })
+  )
+
+  it('serves every point exactly once, inside all limits', () => {
+    const limits = fc.record({
+      readBits: fc.integer({ min: 1, max: 255 }),
+      readWords: fc.integer({ min: 4, max: 128 }),
+      readMixed: fc.integer({ min: 0, max: 128 }),
+      info: fc.integer({ min: 8, max: 256 }),
+      frameCost: fc.constantFrom(0, 60, 1e6)
+    })
+    const bounds = fc.uniqueArray(fc.integer({ min: 0, max: 500 }), { maxLength: 5 })
+    fc.assert(
+      fc.property(fc.array(anyPoint, { maxLength: 150 }), limits, bounds, (points, own, borders) => {
+        const requests = plan(points, { ...own, bounds: borders })
+        checkServed(points, requests)
+        checkLimits(requests, own, borders)
+      }),
+      { numRuns: 300 }
+    )
+  })
+
+  // bytes of INFO both ways, docs/nx.md: block Q 3 (of which 2 count: no mixed request for one address); bits 1 byte, words 2; mixed Q 2 per address
+  const cost = (requests, frameCost) =>
+    requests.reduce((sum, { ask, count, addresses }) => {
+      const bits = addresses ? addresses.filter(({ kind }) => kind === 'bit').length : ask === 'readBits' ? count : 0
+      const all = addresses ? addresses.length : count
+      return sum + frameCost + (addresses ? 2 * all : 2) + bits + 2 * (all - bits)
+    }, 0)
+
+  /** Every way to share: each block alone or its words in mixed requests, which single words fill without a gap. */
+  const cheapest = (points, { readWords, readBits, readMixed, frameCost }) => {
+    const blocks = []
+    for (const [kind, most] of [
+      ['word', readWords],
+      ['bit', readBits]
+    ]) {
+      const all = [...new Set(points.filter(point => point.kind === kind).map(point => point.address))].sort(
+        (a, b) => a - b
+      )
+      for (const address of all) {
+        const last = blocks.at(-1)
+        if (last?.kind === kind && last.from + last.count === address && last.count < most) last.count++
+        else blocks.push({ kind, from: address, count: 1 })
+      }
+    }
+    let best = Infinity
+    for (let choice = 0; choice < 2 ** blocks.length; choice++) {
+      const mixed = blocks.filter((_, at) => choice & (1 << at))
+      const own = blocks.filter((_, at) => !(choice & (1 << at)))
+      const size = ({ kind, count }) => count * (kind === 'bit' ? 1 : 2)
+      const items = mixed.reduce((sum, { count }) => sum + count, 0)
+      const alone = own.reduce((sum, block) => sum + frameCost + 2 + size(block), 0)
+      const shared = mixed.reduce((sum, block) => sum + size(block), 0) + 2 * items
+      best = Math.min(best, alone + shared + Math.ceil(items / readMixed) * frameCost)
+    }
+    return best
+  }
+
+  it('is as cheap as the best of all ways to share, with small limits too', () => {
+    const point = fc.record({
+      kind: fc.constantFrom('word', 'bit'),
+      address: fc.integer({ min: 0, max: 24 }),
+      count: fc.constant(1)
+    })
+    const limits = fc.record({
+      readWords: fc.integer({ min: 2, max: 8 }),
+      readBits: fc.integer({ min: 2, max: 8 }),
+      readMixed: fc.integer({ min: 1, max: 6 }),
+      frameCost: fc.constantFrom(1, 5, 20, 60, 1e6)
+    })
+    fc.assert(
+      fc.property(fc.array(point, { minLength: 1, maxLength: 16 }), limits, (points, own) => {
+        assert.equal(cost(plan(points, own), own.frameCost), cheapest(points, own))
+      }),
+      { numRuns: 300 }
+    )
+  })
+})

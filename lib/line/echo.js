@@ -58,11 +58,9 @@ class Echo {
     return most
   }
 
-  /** Whether this frame, taken as the answer, is our own echo behind a byte of noise. */
-  isEcho(frame) {
-    if (!this.#awaited || !frame.equals(this.#sent)) return false
-    this.#heard = true
-    return true
+  /** Whether these bytes begin with our own echo, still awaited: noise may have come before it. */
+  begins(bytes) {
+    return this.#awaited && bytes.length >= this.#sent.length && bytes.subarray(0, this.#sent.length).equals(this.#sent)
   }
 
   /** The step was answered: now it is known. */

@@ -81,7 +81,6 @@ class Exchange {
     const job = this.#job
     const { send } = job.step
     this.#echo.sent(send)
-    this.#rx.takeAll()
     job.phase = 'awaiting'
     job.sentAt = this.#clock.now()
     this.#sendEnd = job.sentAt + send.length * this.#times.character
@@ -156,10 +155,6 @@ class Exchange {
       const verdict = step.match(bytes)
       if (verdict.take > 0 && verdict.take <= bytes.length) {
         const frame = this.#rx.take(verdict.take)
-        if (this.#echo.isEcho(frame)) {
-          this.#link.echoed(frame)
-          continue
-        }
         this.#echo.answered()
         this.#settle(null, frame)
         return verdict
@@ -179,7 +174,7 @@ class Exchange {
     let at = 0
     while (at < bytes.length) {
       const { skip } = step.match(bytes.subarray(at))
-      if (!(skip > 0)) break
+      if (!(skip > 0) || this.#echo.begins(bytes.subarray(at))) break
       at += skip
     }
     this.#echo.disturbed()
@@ -209,21 +204,20 @@ class Exchange {
     job.due = due
     if (this.#timer !== null && job.firesAt <= due) return
     this.#clock.clearTimer(this.#timer)
-    job.firesAt = due
-    this.#timer = this.#clock.setTimer(this.#expired, due - this.#clock.now())
+    const now = this.#clock.now()
+    job.firesAt = Math.max(due, now)
+    this.#timer = this.#clock.setTimer(this.#expired, due - now)
   }
 
   #expired = () => {
     this.#timer = null
     const job = this.#job
     const now = this.#clock.now()
-    const early = job.due - now
-    if (early > TOLERANCE) return this.#arm(job.due)
-    if (-early > LAG && !job.graced) {
+    if (job.due - now > TOLERANCE) return this.#arm(job.due)
+    const lag = now - job.firesAt
+    if (lag > LAG && !job.graced) {
       job.graced = true
-      job.firesAt = now + Math.min(-early, MOST_GRACE)
-      this.#timer = this.#clock.setTimer(this.#expired, Math.min(-early, MOST_GRACE))
-      return
+      return this.#arm(now + Math.min(lag, MOST_GRACE))
     }
     if (!job.written) return this.#fail(new PlcError('WRITE_STALLED', { line: this.#link.name, sent: true }))
     if (!job.step.match) return this.#settle(null, EMPTY)

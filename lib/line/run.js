@@ -2,7 +2,7 @@
 
 const { PlcError } = require('../error')
 
-/** Failures of the line itself: no other step of the same conversation can go better. */
+/** Failures of the line itself, not of a station. */
 const LINE_CODES = new Set([
   'LINE_CLOSED',
   'LINE_DOWN',
@@ -78,7 +78,6 @@ class Run {
     try {
       const result = this.#resume(error, answer)
       if (result.done) return this.settle(null, result.value)
-      if (isLineFailure(error)) return this.stop(error)
       this.step = checked(result.value)
       return true
     } catch (failure) {

@@ -54,6 +54,12 @@ describe('line: the echo of a 2-wire adapter', () => {
     assert.equal((await failure(put(bench))).code, 'TIMEOUT')
   })
 
+  it('is found out behind noise', async () => {
+    const bench = createBench({ onQuery: wired({ noise: 'ff00' }) })
+    assert.deepEqual(await ask(bench), [7])
+    assert.equal(bench.lease.line.echo, 'present')
+  })
+
   it('is not declared absent when it may have come damaged', async () => {
     const bench = createBench({
       onQuery: (bytes, wire) => {

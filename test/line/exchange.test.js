@@ -112,6 +112,15 @@ describe('line: the answer', () => {
     assert.ok(ms >= 200 && ms < 320, `waited ${ms}`)
   })
 
+  it('that would begin after the timeout is none, whatever prolonged the wait', async () => {
+    const { error, ms } = await exchange([
+      [199, '41'],
+      [230, '9941']
+    ])
+    assert.equal(error.code, 'TIMEOUT')
+    near(ms, 230, 'waited')
+  })
+
   it('is looked for in a bounded buffer', async () => {
     const flood = Array.from({ length: 40 }, (_, i) => [5 + i, 'ff'.repeat(1000)])
     const { value } = await exchange([...flood, [50, ANSWER]])
@@ -309,6 +318,11 @@ describe('line: sending', () => {
     await clock.advance(300)
     assert.equal(opened.length, 2)
     assert.deepEqual(await run(lease.run(() => toy.ask(1), { station: 1 })), [3])
+    // what the port that was given up still says concerns nobody
+    opened[0].handlers.data(Buffer.from([1, 2, 3]))
+    opened[0].handlers.closed(null)
+    assert.equal(lease.line.state, 'open')
+    assert.equal(lease.line.stats().strayBytes, 0)
   })
 
   it('of a broadcast waits for the turnaround, and counts no timeout', async () => {

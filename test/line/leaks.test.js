@@ -49,7 +49,8 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     const link = path.join(folder, 'port')
     const pty = createPty({ link })
     pty.onData(bytes => pty.write(toy.answer(bytes[1], [1], bytes[2])))
-    const pool = createPool({ clock: fastClock(10), random: () => 0.5 })
+    const clock = fastClock(10)
+    const pool = createPool({ clock, random: () => 0.5 })
     const cycle = async n => {
       const lease = pool.open({ path: link, baudRate: 115200, slack: 2000 }, { id: 'a', name: 'a' })
       await reached(lease, 'open')
@@ -64,6 +65,7 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     for (let n = 10; n < 1010; n++) await cycle(n)
     assert.equal(await settledTo(handles), handles)
     assert.equal(openFiles(), files)
+    assert.equal(clock.pending(), 0)
     pty.close()
     fs.rmSync(folder, { recursive: true })
   })

@@ -159,6 +159,19 @@ describe('line: opening, losing, coming back', () => {
     assert.equal(clock.pending(), 0)
   })
 
+  it('begins with the short delay again after an answer', async () => {
+    const { clock, wire, run, lease } = createBench({ onQuery: answering })
+    wire.refuse = notFound
+    await clock.advance(1000)
+    wire.refuse = null
+    await clock.advance(1000)
+    assert.equal(lease.line.state, 'open')
+    await run(lease.run(() => toy.ask(1), { station: 1 }))
+    wire.unplug()
+    await clock.advance(255)
+    assert.equal(lease.line.state, 'open')
+  })
+
   it('varies the delays', async () => {
     for (const [random, expected] of [
       [0, 187.5],

@@ -96,6 +96,29 @@ describe('line: quarantine', () => {
     )
   })
 
+  it('keeps it also before others of the same class, which go on afterwards', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [null] }) })
+    const first = bench.lease.run(() => toy.askAgain(1, { nonce: 1 }), { station: 1 })
+    const others = [2, 3].map(nonce => bench.lease.run(() => toy.ask(1, { nonce }), { station: 1 }))
+    await bench.run(Promise.all([first, ...others]))
+    assert.deepEqual(
+      bench.wire.sent.map(({ bytes }) => bytes[2]),
+      [1, 1, 2, 3]
+    )
+  })
+
+  it('ends with the conversation that keeps the station, also when it is given up', async () => {
+    const bench = createBench({ onQuery: stations({ 1: [null] }) })
+    const other = bench.open({}, 'other')
+    const first = failure(bench.lease.run(() => toy.askAgain(1, { nonce: 1 }), { station: 1 }))
+    const second = other.run(() => toy.ask(1, { nonce: 2 }), { station: 1 })
+    await bench.clock.advance(500)
+    await bench.lease.release()
+    assert.deepEqual(await bench.run(second), [102])
+    const error = await first
+    assert.deepEqual([error.code, error.details.sent], ['LINE_CLOSED', true])
+  })
+
   it('learns the lateness × 1.5, tells the user, and starts the silence anew', async () => {
     const bench = createBench({ onQuery: stations({ 1: [[1100, [66]]] }) })
     const events = []

@@ -6,12 +6,27 @@ const path = require('node:path')
 const { realClock } = require('../../../lib/line')
 
 /** The machine's clock, some times as fast: real ports without waiting for real back-offs. */
-const fastClock = (factor = 5) => ({
-  now: () => realClock.now() * factor,
-  wall: realClock.wall,
-  setTimer: (fn, ms) => realClock.setTimer(fn, ms / factor),
-  clearTimer: realClock.clearTimer
-})
+const fastClock = (factor = 5) => {
+  const live = new Set()
+  return {
+    now: () => realClock.now() * factor,
+    wall: realClock.wall,
+    setTimer: (fn, ms) => {
+      const fire = () => {
+        live.delete(timer)
+        fn()
+      }
+      const timer = realClock.setTimer(fire, ms / factor)
+      live.add(timer)
+      return timer
+    },
+    clearTimer: timer => {
+      live.delete(timer)
+      realClock.clearTimer(timer)
+    },
+    pending: () => live.size
+  }
+}
 
 /** Resolves when the line is in this state. */
 const reached = (lease, state) =>

@@ -16,13 +16,14 @@ const supported = ['linux', 'darwin'].includes(process.platform)
 const answering = pty => bytes => pty.write(toy.answer(bytes[1], [bytes[1], 2, 3], bytes[2]))
 
 ;(supported ? describe : describe.skip)('serial transport on a pty', () => {
-  let folder, link, pty, pool, leases
+  let folder, link, pty, clock, pool, leases
 
   beforeEach(() => {
     folder = tempFolder()
     link = path.join(folder, 'port')
     pty = createPty({ link })
-    pool = createPool({ clock: fastClock(), random: () => 0.5 })
+    clock = fastClock()
+    pool = createPool({ clock, random: () => 0.5 })
     leases = []
   })
   afterEach(async () => {
@@ -85,6 +86,18 @@ const answering = pty => bytes => pty.write(toy.answer(bytes[1], [bytes[1], 2, 3
     await new Promise(resolve => setTimeout(resolve, 10))
     pty.unplug()
     assert.equal((await promise).code, 'PORT_GONE')
+  })
+
+  it('leaves no timer when it is closed while it sleeps', async () => {
+    const query = new Promise(resolve => pty.onData(resolve))
+    pty.onData(() => pty.write(toy.answer(5, Array(250).fill(1)).subarray(0, 10)))
+    const lease = open({ baudRate: 300 })
+    const promise = failure(ask(lease))
+    await query
+    await new Promise(resolve => setTimeout(resolve, 30))
+    await lease.release()
+    assert.equal((await promise).code, 'LINE_CLOSED')
+    assert.equal(clock.pending(), 0)
   })
 
   it('says that a port is missing, and opens it when it appears', async () => {

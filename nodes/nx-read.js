@@ -79,7 +79,7 @@ const startReader = (RED, session) => {
   const deliver = createDelivery(RED, session)
   /** @type {any} */
   const fixed = settings.itemsType === 'list' ? sorted(device, itemsOf(settings.items)) : null
-  fixed?.problems.forEach(problem => node.error(problem, {}))
+  fixed?.problems.forEach(session.warn)
 
   const show = results => {
     if (!session.closed) display.update(summary(results))

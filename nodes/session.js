@@ -35,6 +35,23 @@ const statusDisplay = (RED, node) => {
   }
 }
 
+/**
+ * Reports what is wrong with the configuration when the flows run: in a constructor no Catch node would hear it.
+ * @param {any} RED @param {any} node
+ */
+const deployReport = (RED, node) => {
+  let errors = []
+  const tell = () => {
+    errors.forEach(error => node.error(error, {}))
+    errors = []
+  }
+  RED.events.once('flows:started', tell)
+  return {
+    add: error => errors.push(error),
+    stop: () => RED.events.off('flows:started', tell)
+  }
+}
+
 const findPlc = (RED, settings, node) => {
   const plc = RED.nodes.getNode(settings.plc)
   if (!plc) throw new PlcError('NO_CONFIGURATION', { node: node.name || node.type, what: 'plc' })
@@ -49,8 +66,19 @@ const findPlc = (RED, settings, node) => {
  */
 const openSession = (RED, node, { type, config, start }) => {
   const display = statusDisplay(RED, node)
+  const report = deployReport(RED, node)
   /** @type {any} */
-  const session = { node, display, settings: null, plc: null, device: null, fault: null, closed: false, failed: null }
+  const session = {
+    node,
+    display,
+    settings: null,
+    plc: null,
+    device: null,
+    fault: null,
+    closed: false,
+    failed: null,
+    warn: report.add
+  }
   /** @type {any} */
   let stop
   const attached = () => {
@@ -65,7 +93,7 @@ const openSession = (RED, node, { type, config, start }) => {
   } catch (/** @type {any} */ error) {
     session.fault = error
     display.update({ fault: error })
-    node.error(error, {})
+    report.add(error)
   }
   session.failed = (error, done) => {
     if (!session.closed) display.update({ phase: 'failed', code: error.code })
@@ -74,6 +102,7 @@ const openSession = (RED, node, { type, config, start }) => {
   node.on('close', (_removed, done) => {
     session.closed = true
     display.stop()
+    report.stop()
     stop?.()
     Promise.resolve(session.plc?.detach(node)).then(
       () => done(),

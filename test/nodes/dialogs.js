@@ -45,4 +45,4 @@ const loadDialogs = ({ language = 'en-US', nodes = [] } = {}) => {
   return { types, ui: context.nxlineSerialPlc }
 }
 
-module.exports = { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, loadDialogs, lookUp }
+module.exports = { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, loadDialogs, lookUp, translator }

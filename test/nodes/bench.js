@@ -1,0 +1,131 @@
+'use strict'
+const path = require('node:path')
+const helper = require('node-red-node-test-helper')
+const { createNxLine, serveOnTcp } = require('../../lib/sim')
+const { TYPES, translator } = require('./dialogs')
+
+/** Flows in Node-RED's test helper, on a simulator behind TCP whose memory and faults the test holds in its hands. */
+
+const RED = process.env.SERIAL_PLC_RED
+  ? path.join(process.env.SERIAL_PLC_RED, 'lib/red.js')
+  : require.resolve('node-red')
+helper.init(RED)
+const texts = translator('en-US')
+
+// the helper stubs the catalogue: here the nodes speak
+const speaking = type => red => {
+  red._ = texts
+  return require(`../../nodes/${type}`)(red)
+}
+const NODES = TYPES.map(speaking)
+
+const tick = (ms = 5) => new Promise(resolve => setTimeout(resolve, ms))
+
+/** @param {() => any} check @param {string} [what] */
+const until = async (check, what = 'something') => {
+  const end = Date.now() + 4000
+  for (;;) {
+    const found = check()
+    if (found) return found
+    if (Date.now() > end) throw new Error(`waited in vain for ${what}`)
+    await tick()
+  }
+}
+
+/** A simulated line behind TCP. `quiet`: nothing moves by itself. */
+const openWire = async (settings = {}) => {
+  const line = createNxLine({ quiet: true, baudRate: 115200, turnaround: 1, ...settings })
+  const server = await serveOnTcp({ wire: line.wire })
+  return { ...line, ...server }
+}
+
+// a node without a place would count as a config node
+const ON_TAB = { z: 'tab', x: 1, y: 1 }
+const TAB = { id: 'tab', type: 'tab', label: 'test' }
+
+const lineNode = (wire, more = {}) => ({
+  id: 'line',
+  type: 'plc-line',
+  name: 'Line',
+  transport: 'tcp',
+  host: '127.0.0.1',
+  port: String(wire.port),
+  baudRate: '115200',
+  ...more
+})
+
+const plcNode = (more = {}) => ({
+  id: 'plc',
+  type: 'nx-config',
+  name: 'Oven',
+  line: 'line',
+  station: '1',
+  timeout: '150',
+  attempts: '1',
+  ...more
+})
+
+const reader = (more = {}) => ({
+  id: 'read',
+  type: 'nx-read',
+  ...ON_TAB,
+  plc: 'plc',
+  interval: '0',
+  wires: [['out']],
+  ...more
+})
+const writer = (more = {}) => ({
+  id: 'write',
+  type: 'nx-write',
+  ...ON_TAB,
+  plc: 'plc',
+  wires: [['out'], ['failed']],
+  ...more
+})
+const probe = id => ({ id, type: 'helper', ...ON_TAB, wires: [] })
+const catcher = { id: 'catch', type: 'catch', ...ON_TAB, scope: null, uncaught: false, wires: [['caught']] }
+
+/** Messages that arrive at a helper node. */
+const collect = id => {
+  const messages = []
+  helper.getNode(id).on('input', (msg, _send, done) => {
+    messages.push(msg)
+    done()
+  })
+  return messages
+}
+
+/**
+ * Loads a flow with the probes `out`, `failed` and `caught`.
+ * @param {any[]} nodes
+ */
+const load = async nodes => {
+  await helper.load(NODES, [TAB, ...nodes, probe('out'), probe('failed'), catcher, probe('caught')])
+  return { out: collect('out'), failed: collect('failed'), caught: collect('caught') }
+}
+
+/** Statuses of a node from now on. */
+const statuses = id => {
+  const seen = []
+  helper.getNode(id).on('call:status', call => seen.push(call.args[0]))
+  return seen
+}
+
+module.exports = {
+  NODES,
+  ON_TAB,
+  TAB,
+  catcher,
+  collect,
+  helper,
+  lineNode,
+  load,
+  openWire,
+  plcNode,
+  probe,
+  reader,
+  statuses,
+  tick,
+  until,
+  writer
+}

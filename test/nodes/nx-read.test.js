@@ -1,0 +1,252 @@
+'use strict'
+const assert = require('node:assert/strict')
+const { helper, lineNode, load, openWire, plcNode, reader, statuses, tick, until } = require('./bench')
+
+const TAGS = [
+  { name: 'level', address: 'W10', type: 'float32', unit: 'mm', label: 'Level' },
+  { name: 'speed', address: 'M5', type: 'int16', scale: '0.1', deadband: '1' }
+]
+
+describe('nx-read', () => {
+  let wire
+  before(() => helper.startServer())
+  after(() => helper.stopServer())
+  beforeEach(async () => {
+    wire = await openWire({ stations: [1, 2] })
+    const [plc] = wire.plcs
+    plc.set('M0', 7)
+    plc.set('M1', 8)
+    plc.set('M5', 253)
+    plc.set('W10', 21.5, 'float32')
+    plc.set('K127.12', true)
+  })
+  afterEach(async () => {
+    await helper.unload()
+    assert.equal(wire.connections(), 0, 'a connection is left')
+    await wire.close()
+  })
+
+  const ask = async (config, { plc = {}, msg = {} } = {}) => {
+    const probes = await load([lineNode(wire), plcNode({ tags: TAGS, ...plc }), reader(config)])
+    helper.getNode('read').receive(msg)
+    return probes
+  }
+  const answers = async (config, options) => {
+    const { out } = await ask(config, options)
+    await until(() => out.length > 0, 'a message')
+    await tick(20)
+    return out
+  }
+
+  it('object: one message, topic = device, the incoming message is kept', async () => {
+    const request = { payload: 'asked', topic: 'old', req: { url: '/' }, own: { deep: 1 } }
+    const [msg, more] = await answers({ items: ['M0', 'K127.12', 'level', 'speed', 'M0..M1'] }, { msg: request })
+    assert.deepEqual(msg.payload, { M0: 7, K127_12: true, level: 21.5, speed: 25.3, M0_M1: [7, 8] })
+    assert.equal(msg.topic, 'Oven')
+    assert.equal(msg.device, 'Oven')
+    assert.equal(msg.quality, 'good')
+    assert.ok(Math.abs(msg.timestamp - Date.now()) < 2000)
+    assert.deepEqual(msg.own, { deep: 1 })
+    assert.deepEqual(msg.req, { url: '/' })
+    assert.ok(!('bad' in msg) && !('simulated' in msg))
+    assert.equal(more, undefined)
+  })
+
+  it('message: one for each item, with parts; each keeps the incoming properties', async () => {
+    const out = await answers({ items: ['M0', 'level'], format: 'message' }, { msg: { own: 1 } })
+    assert.deepEqual(
+      out.map(({ topic, payload, own }) => [topic, payload, own]),
+      [
+        ['M0', 7, 1],
+        ['level', 21.5, 1]
+      ]
+    )
+    assert.equal(out[0].parts.count, 2)
+    assert.equal(out[0].parts.id, out[1].parts.id)
+    assert.deepEqual(
+      out.map(({ parts }) => parts.index),
+      [0, 1]
+    )
+    assert.notEqual(out[0], out[1])
+  })
+
+  it('envelope: value, quality, timestamp, unit', async () => {
+    const [msg] = await answers({ items: ['level'], format: 'envelope' })
+    const { timestamp, ...rest } = msg.payload
+    assert.deepEqual(rest, { value: 21.5, quality: 'good', unit: 'mm' })
+    assert.equal(typeof timestamp, 'number')
+    assert.equal(msg.topic, 'level')
+  })
+
+  it('list', async () => {
+    const [msg] = await answers({ items: ['M0', 'level'], format: 'list' })
+    assert.deepEqual(
+      msg.payload.map(({ name, value }) => [name, value]),
+      [
+        ['M0', 7],
+        ['level', 21.5]
+      ]
+    )
+  })
+
+  it('ranges as values, bits as numbers', async () => {
+    const [msg] = await answers({ items: ['M0..M1', 'K127.12'], ranges: 'values', booleans: 'number' })
+    assert.deepEqual(msg.payload, { M0: 7, M1: 8, K127_12: 1 })
+  })
+
+  it('items from msg.items, which is removed; the list does not count then', async () => {
+    for (const items of [['M0', 'speed'], 'M0, speed']) {
+      const [msg] = await answers({ itemsType: 'msg', items: ['M99'], interval: '1000' }, { msg: { items } })
+      assert.deepEqual(msg.payload, { M0: 7, speed: 25.3 })
+      assert.ok(!('items' in msg))
+      await helper.unload()
+    }
+  })
+
+  for (const [what, items] of [
+    ['nothing', undefined],
+    ['a number', 5],
+    ['an empty list', []],
+    ['numbers', [1, 2]],
+    ['an object with a length', { length: 1e9 }],
+    ['far too many', new Array(5000).fill('M0')]
+  ]) {
+    it(`hostile msg.items: ${what} ends in done(err) with a code`, async () => {
+      const { out, caught } = await ask({ itemsType: 'msg' }, { msg: { items } })
+      await until(() => caught.length > 0, 'an error')
+      assert.match(caught[0].error.code, /^(BAD_ITEMS|TOO_MANY)$/)
+      assert.equal(out.length, 0)
+    })
+  }
+
+  it('an inherited msg.items does not count', async () => {
+    const { caught } = await ask({ itemsType: 'msg' }, { msg: Object.create({ items: ['M0'] }) })
+    await until(() => caught.length > 0, 'an error')
+    assert.equal(caught[0].error.code, 'BAD_ITEMS')
+  })
+
+  it('one bad item names itself and does not spoil the others', async () => {
+    const { out, caught } = await ask({ items: ['M0', 'Q7', 'K127.16'] })
+    await until(() => out.length > 0)
+    assert.deepEqual(out[0].payload, { M0: 7 })
+    assert.equal(out[0].quality, 'bad')
+    assert.equal(out[0].bad.Q7.code, 'UNKNOWN_AREA')
+    assert.equal(out[0].bad.K127_16.code, 'BAD_BIT')
+    assert.match(out[0].bad.Q7.text, /Q7/)
+    await tick(20)
+    assert.deepEqual(caught.map(({ error }) => error.code).sort(), ['BAD_BIT', 'UNKNOWN_AREA'])
+  })
+
+  it('badValues null', async () => {
+    const [msg] = await answers({ items: ['M0', 'Q7'], badValues: 'null' })
+    assert.deepEqual(msg.payload, { M0: 7, Q7: null })
+  })
+
+  it('no answer: an error with its code, no message; as envelope a message that says bad', async () => {
+    wire.wire.setOff(1, true)
+    const { out, caught } = await ask({ items: ['M0'] }, { msg: { own: 5 } })
+    await until(() => caught.length > 0)
+    assert.equal(caught[0].error.code, 'TIMEOUT')
+    assert.match(caught[0].error.message, /station 1/)
+    assert.equal(caught[0].own, 5)
+    assert.equal(out.length, 0)
+    await helper.unload()
+    const [msg] = await answers({ items: ['M0'], format: 'envelope' })
+    assert.equal(msg.payload.quality, 'bad')
+    assert.equal(msg.payload.value, null)
+  })
+
+  it('polls at its interval; report changed sends only what changed, beyond the deadband', async () => {
+    const { out } = await load([
+      lineNode(wire),
+      plcNode({ tags: TAGS }),
+      reader({ items: ['M0', 'speed'], interval: '20', report: 'changed' })
+    ])
+    await until(() => out.length === 1)
+    wire.plcs[0].set('M0', 9)
+    await until(() => out.length === 2)
+    wire.plcs[0].set('M5', 255)
+    await tick(50)
+    wire.plcs[0].set('M5', 300)
+    await until(() => out.length === 3)
+    assert.deepEqual(
+      out.map(({ payload }) => payload),
+      [{ M0: 7, speed: 25.3 }, { M0: 9 }, { speed: 30 }]
+    )
+  })
+
+  it('report allOnChange sends everything, but only if something changed', async () => {
+    const { out } = await load([
+      lineNode(wire),
+      plcNode(),
+      reader({ items: ['M0', 'M1'], interval: '20', report: 'allOnChange' })
+    ])
+    await until(() => out.length === 1)
+    await tick(50)
+    assert.equal(out.length, 1)
+    wire.plcs[0].set('M1', 1)
+    await until(() => out.length === 2)
+    assert.deepEqual(out[1].payload, { M0: 7, M1: 1 })
+  })
+
+  it('a polled error is reported once, when the state changes', async () => {
+    const { out, caught } = await load([
+      lineNode(wire),
+      plcNode({ timeout: '20' }),
+      reader({ items: ['M0'], interval: '20' })
+    ])
+    await until(() => out.length > 1)
+    const [plc] = wire.plcs
+    plc.set('M0', 1)
+    // one error only while every poll fails: the PLC refuses each of them
+    wire.wire.setOff(1, true)
+    await until(() => caught.length > 0)
+    const sent = out.length
+    await tick(50)
+    assert.equal(caught.length, 1)
+    assert.equal(caught[0].error.code, 'TIMEOUT')
+    assert.equal(out.length, sent)
+    wire.wire.setOff(1, false)
+    await until(() => out.length > sent, 'recovery')
+    assert.equal(out.at(-1).payload.M0, 1)
+  })
+
+  it('several readers of two PLCs on one wire share one connection', async () => {
+    const { out } = await load([
+      lineNode(wire),
+      plcNode(),
+      plcNode({ id: 'plc2', name: 'Press', station: 2 }),
+      reader({ items: ['M0'], interval: '20' }),
+      reader({ id: 'read2', items: ['M1'], interval: '30' }),
+      reader({ id: 'read3', plc: 'plc2', items: ['M0'], interval: '20' })
+    ])
+    await until(() => new Set(out.map(({ topic, payload }) => topic + Object.keys(payload))).size === 3)
+    assert.equal(wire.connections(), 1)
+    assert.deepEqual(Object.keys(helper.getNode('line').users).sort(), ['read', 'read2', 'read3'])
+    assert.deepEqual(Object.keys(helper.getNode('plc').users).sort(), ['read', 'read2'])
+  })
+
+  it('status: a ring while connecting, a dot with the count', async () => {
+    await load([lineNode(wire), plcNode(), reader({ items: ['M0', 'M1'], interval: '20' })])
+    const seen = statuses('read')
+    await until(() => seen.length > 1, 'the second status, a second later')
+    assert.deepEqual(seen, [
+      { fill: 'yellow', shape: 'ring', text: 'connecting' },
+      { fill: 'green', shape: 'dot', text: '2 values' }
+    ])
+  })
+
+  it('a simulated line marks its messages and its status', async () => {
+    const line = { id: 'line', type: 'plc-line', transport: 'simulated' }
+    const { out } = await load([line, plcNode({ name: '' }), reader({ items: ['M0', 'W10:float32'], interval: '20' })])
+    const seen = statuses('read')
+    await until(() => out.length > 0)
+    assert.equal(out[0].simulated, true)
+    assert.equal(out[0].topic, 'NX PLC 1')
+    await until(() => seen.length > 1)
+    assert.deepEqual(
+      seen.map(({ text }) => text),
+      ['SIM connecting', 'SIM 2 values']
+    )
+  })
+})

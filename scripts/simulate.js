@@ -14,6 +14,7 @@ const OPTIONS = {
   baud: { type: 'string', argument: 'N', text: 'speed of the line in bit/s (19200)' },
   turnaround: { type: 'string', argument: 'MS', text: 'time a station takes before it answers (2)' },
   fault: { type: 'string', argument: 'LIST', text: 'kind:rate or kind:rate:number, with commas; kinds below' },
+  protect: { type: 'string', argument: 'RANGE', text: 'memory that cannot be written: error 4, such as F0..F15,K0' },
   seed: { type: 'string', argument: 'N', text: 'repeats a run of faults (else a new one, printed)' },
   echo: { type: 'boolean', text: 'the adapter hears itself (2-wire)' },
   quiet: { type: 'boolean', text: 'no live values: memory starts at 0 and holds what is written' },
@@ -79,6 +80,7 @@ function read(args) {
     turnaround: whole(values, 'turnaround', { standard: 2, least: 0, most: 60000 }),
     rates: sim.parseFaults(values.fault ?? ''),
     seed: whole(values, 'seed', { standard: sim.freshSeed(), least: 0, most: 0xffffffff }),
+    protect: (values.protect ?? '').split(',').filter(Boolean),
     echo: values.echo ?? false,
     quiet: values.quiet ?? false
   }
@@ -88,7 +90,8 @@ async function main(args) {
   const settings = read(args)
   if (settings.help) return void console.log(help())
   const { stations, pty, port, host, baudRate, seed, rates = [] } = settings
-  const { wire } = sim.createNxLine(settings)
+  const { protect } = settings
+  const { wire } = sim.createNxLine({ ...settings, stations: stations.map(station => ({ station, protect })) })
   const server = pty === undefined ? await sim.serveOnTcp({ wire, port, host }) : sim.serveOnPty({ wire, link: pty })
   const where = 'port' in server ? `tcp ${server.host}:${server.port}` : `pty ${server.path()}`
   const faults = rates.map(({ kind, rate, argument }) =>

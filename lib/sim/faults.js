@@ -167,7 +167,7 @@ function pick(active, share) {
  * @param {number} others sum of the other rates
  */
 function check({ kind, rate, argument }, others) {
-  const value = [kind, rate, argument].filter(each => each !== undefined).join(':')
+  const value = [kind, rate, argument].filter(each => each !== undefined && !Number.isNaN(each)).join(':')
   const refuse = reason => new PlcError('BAD_SETTING', { setting: 'fault', value, reason })
   if (!Object.hasOwn(KINDS, kind)) throw refuse(`known faults are ${Object.keys(KINDS).join(', ')}`)
   if (!(rate >= 0 && rate <= 1)) throw refuse('the rate must be a number from 0 to 1, as in late:0.02')

@@ -6,6 +6,9 @@ const { createNxPlc } = require('./nx-plc')
 const { createRandom } = require('./random')
 const { createWire } = require('./wire')
 
+// Real programs and kernels make pauses inside a frame that are none on a wire
+const REAL_GAP = 25
+
 // A process that shows something: W10 is a temperature (float32) behind its set point K10 (int16, tenths of a degree),
 // K127.12 switches a pump whose feedback is M1.0; M0 counts seconds
 const DEMO = [
@@ -36,12 +39,13 @@ function createNxLine(settings = {}) {
     clock = createRealClock(),
     ...rest
   } = settings
+  const gap = settings.clock ? {} : { gap: REAL_GAP }
   const random = createRandom(seed)
   const faults = createFaults({ random: random.fork(), rates })
   const wire = createWire({ ...rest, clock, faults, random: random.fork() })
   const plcs = stations.map(each => {
     const own = typeof each === 'number' ? { station: each } : each
-    const plc = createNxPlc({ turnaround, behaviour: quiet ? [] : DEMO, random: random.fork(), clock, ...own })
+    const plc = createNxPlc({ turnaround, behaviour: quiet ? [] : DEMO, random: random.fork(), clock, ...gap, ...own })
     if (!quiet && !own.behaviour) plc.set('K10', 600)
     wire.add(plc)
     return plc

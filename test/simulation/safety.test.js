@@ -64,7 +64,8 @@ describe('safety: any faults, up to 30 % of all answers', function () {
 describe('safety: the run has teeth', function () {
   this.timeout(60000)
   const late = { seed: 9, exchanges: 1500, unplugs: 0, collisions: false, uniform: true }
-  const faults = [{ kind: 'late', rate: 0.2 }]
+  // 25 ms after the timeout of 150: an ID is used again only after eight queries
+  const faults = [{ kind: 'late', rate: 0.2, argument: 175 }]
   const fixedId = { masterIds: 226, attempts: 1 }
 
   it('without quarantine and with one fixed ID late answers are taken, and the run sees it', async () => {

@@ -1,0 +1,115 @@
+'use strict'
+
+const assert = require('node:assert')
+const { spawn, spawnSync } = require('node:child_process')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+
+const SCRIPT = path.join(__dirname, '../../scripts/simulate.js')
+const CLIENT = path.join(__dirname, 'independent_client.py')
+const hasPython = spawnSync('python3', ['--version']).status === 0
+
+/** Starts the simulator and waits for its line; `stop` ends it as Ctrl-C does. */
+function simulate(...args) {
+  const child = spawn(process.execPath, [SCRIPT, ...args], { stdio: ['ignore', 'pipe', 'pipe'] })
+  let text = ''
+  const ended = new Promise(resolve => child.on('close', code => resolve({ code, text })))
+  child.stderr.on('data', data => (text += data))
+  const line = new Promise((resolve, reject) => {
+    child.stdout.on('data', data => {
+      text += data
+      if (text.includes('\n')) resolve(text)
+    })
+    child.on('close', code => reject(new Error(`ended with ${code}: ${text}`)))
+  })
+  const stop = signal => {
+    child.kill(signal)
+    return ended
+  }
+  return { line, stop, ended }
+}
+
+const runPython = where =>
+  new Promise(resolve => {
+    const child = spawn('python3', [CLIENT, where])
+    let text = ''
+    for (const stream of [child.stdout, child.stderr]) stream.on('data', data => (text += data))
+    child.on('close', code => resolve({ code, text }))
+  })
+
+const assertFoundCorrect = ({ code, text }) => {
+  assert.strictEqual(code, 0, text)
+  assert.match(text, /ok 25\s*$/)
+}
+
+describe('npm run simulate', function () {
+  this.timeout(30000)
+  let folder
+  before(() => (folder = fs.mkdtempSync(path.join(os.tmpdir(), 'simulate-'))))
+  after(() => fs.rmSync(folder, { recursive: true, force: true }))
+  const nx = ['nx', '--stations', '1', '--baud', '38400', '--quiet', '--protect', 'F0..F15', '--seed', '7']
+
+  it('on a virtual serial port: an independent client finds it correct', async function () {
+    if (!hasPython) return skip(this, 'python3 is not installed')
+    if (process.platform === 'win32') return skip(this, 'there is no pty')
+    const link = path.join(folder, 'plc')
+    const { line, stop } = simulate(...nx, '--pty', link)
+    try {
+      assert.strictEqual(await line, `nx stations 1 on pty ${link}, 38400 bit/s, faults none, seed 7\n`)
+      assertFoundCorrect(await runPython(link))
+    } finally {
+      assert.strictEqual((await stop('SIGINT')).code, 0)
+    }
+    assert.strictEqual(fs.lstatSync(link, { throwIfNoEntry: false }), undefined)
+  })
+
+  it('over TCP, on a free port that it prints: the same client', async function () {
+    if (!hasPython) return skip(this, 'python3 is not installed')
+    const { line, stop } = simulate(...nx, '--tcp', '0')
+    try {
+      const found = /^nx stations 1 on tcp (127\.0\.0\.1:\d+), /.exec(await line)
+      assert.ok(found)
+      assertFoundCorrect(await runPython(found[1]))
+    } finally {
+      assert.strictEqual((await stop('SIGTERM')).code, 0)
+    }
+  })
+
+  const wrong = [
+    [[], 'the device is missing: it must be nx'],
+    [['modbus', '--tcp', '0'], 'the device is modbus: it must be nx'],
+    [['nx'], '--pty, --tcp is missing: give one of them'],
+    [['nx', '--tcp', '0', '--pty', 'x'], '--pty, --tcp is both'],
+    [['nx', '--tcp', '70000'], '--tcp is 70000: it must be a whole number from 0 to 65535'],
+    [['nx', '--tcp', '0', '--stations', '1,192'], '--stations is 192: it must be a whole number from 0 to 191'],
+    [['nx', '--tcp', '0', '--stations', '3,3'], '--stations is 3,3: a number stands there twice'],
+    [['nx', '--tcp', '0', '--fault', 'tired:0.1'], 'fault is tired:0.1: known faults are lost, silent,'],
+    [['nx', '--tcp', '0', '--fault', 'late'], 'fault is late: the rate must be a number'],
+    [['nx', '--tcp', '0', '--protect', 'X1'], '"X1" names the area X'],
+    [['nx', '--tcp', '0', '--frobnicate'], "Unknown option '--frobnicate'"]
+  ]
+  for (const [args, text] of wrong) {
+    it(`${args.join(' ') || 'nothing'}: ${text}`, async () => {
+      const { line, ended } = simulate(...args)
+      await assert.rejects(line)
+      const { code, text: said } = await ended
+      assert.strictEqual(code, 2, said)
+      assert.ok(said.includes(String(text)), said)
+    })
+  }
+
+  it('--help names every option and fault', async () => {
+    const { line, ended } = simulate('--help')
+    await line
+    const { code, text } = await ended
+    assert.strictEqual(code, 0)
+    for (const word of ['--pty LINK', '--tcp PORT', '--seed N', 'late ', 'merged '])
+      assert.ok(text.includes(word), word)
+  })
+})
+
+function skip(test, reason) {
+  test.test.title += ` (${reason})`
+  test.skip()
+}

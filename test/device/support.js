@@ -31,6 +31,8 @@ const bench = ({ sim = {}, plc = {}, line = {} } = {}) => {
     close: async () => {
       device.close()
       await clock.run(lease.release())
+      // what the stations still have to say
+      await clock.advance(5000)
     }
   }
 }

@@ -101,7 +101,6 @@ async function main(args) {
     `nx stations ${stations.join(',')} on ${where}, ${baudRate} bit/s, faults ${faults.join(',') || 'none'}, seed ${seed}`
   )
   await new Promise(resolve => {
-    // node's signals keep nothing alive: a pipe to us that closes does not either
     for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) process.once(signal, resolve)
   })
   await server.close()

@@ -5,6 +5,7 @@ const { parseAddress } = require('../codec/nx/address')
 const { createBehaviour, toWords, fromWords, wordsOf } = require('./behaviour')
 
 const WORDS = 0x10000
+const MOST_HISTORY = 1000 // changes of one word that are kept at least
 const AS_BITS = 1
 const AS_WORDS = 2
 const ACCESS = { bits: AS_BITS, words: AS_WORDS, both: AS_BITS | AS_WORDS }
@@ -27,6 +28,7 @@ function createMemory({ now, areas: rows, behaviour = [], history = false }) {
     if (log && words[word] !== value) {
       const entries = log.get(word) ?? log.set(word, [[-Infinity, words[word]]]).get(word)
       entries.push([now(), value])
+      if (entries.length > 2 * MOST_HISTORY) entries.splice(0, MOST_HISTORY)
     }
     words[word] = value
   }
@@ -107,14 +109,17 @@ function createLive(rows, { now, areas, words, store, peek }) {
     const time = now()
     if (cell.time === time) return
     cell.time = time
-    cell.encode(cell.behaviour.at(time), words[cell.word]).forEach((value, n) => store(cell.word + n, value))
+    const values = cell.encode(cell.behaviour.at(time), words[cell.word])
+    // pure ones can be asked for any moment: they need no history
+    if (cell.askable) values.forEach((value, n) => (words[cell.word + n] = value))
+    else values.forEach((value, n) => store(cell.word + n, value))
   }
   return {
     refresh: word => byWord.get(word)?.forEach(update),
     settle: () => stateful.forEach(update),
     between(word, from, to) {
       const cell = byWord.get(word)?.[0]
-      if (!cell?.behaviour.pure || cell.bit !== null) return null
+      if (!cell?.askable) return null
       const { every, at } = cell.behaviour
       const held = []
       for (let step = Math.floor(from / every); step * every <= to; step++) {
@@ -133,10 +138,10 @@ function createCell(row, { areas, peek }) {
   if (kind === 'bit') {
     const mask = 1 << (address & 15)
     const encode = (on, old) => [on ? old | mask : old & ~mask]
-    return { word: address >> 4, size: 1, bit: address & 15, behaviour, encode, time: NaN }
+    return { word: address >> 4, size: 1, askable: false, behaviour, encode, time: NaN }
   }
   const encode = value => toWords(type, value)
-  return { word: address, size: wordsOf(type), bit: null, behaviour, encode, time: NaN }
+  return { word: address, size: wordsOf(type), askable: behaviour.pure, behaviour, encode, time: NaN }
 }
 
 function targetOf({ of, ofAs = 'uint16' }, { areas, peek }) {

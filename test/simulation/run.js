@@ -267,10 +267,7 @@ async function write(system, index) {
   const { random, report, devices } = system
   const { station } = STATIONS[index]
   const first = random.integer(0, 100)
-  const entries = Array.from({ length: random.integer(1, 3) }, (_, n) => {
-    const value = ++system.serial & 0xffff
-    return { item: `K${first + 2 * n}`, value, key: `${station}:${K0 + first + 2 * n}:${value}` }
-  })
+  const entries = Array.from({ length: random.integer(1, 3) }, (_, n) => newEntry(system, station, first + 2 * n))
   report.asked++
   const outcome = await devices[index].write(entries.map(({ item, value }) => ({ item, value })))
   report.settled++
@@ -278,6 +275,14 @@ async function write(system, index) {
   outcome.items.forEach((item, n) =>
     system.writes.set(entries[n].key, { ...entryOf(system, entries[n].key), said: item.outcome })
   )
+}
+
+function newEntry(system, station, number) {
+  for (;;) {
+    const value = ++system.serial & 0xffff
+    const key = `${station}:${K0 + number}:${value}`
+    if (!system.writes.has(key)) return { item: `K${number}`, value, key }
+  }
 }
 
 const entryOf = ({ writes }, key) => writes.get(key) ?? { times: 0 }

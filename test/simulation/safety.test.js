@@ -42,7 +42,7 @@ describe('safety: any faults, up to 30 % of all answers', function () {
 
   const seed = freshSeed()
   it(`a fresh seed: ${seed}`, async () => {
-    const report = await safetyRun({ seed, exchanges: 4000, collisions: false })
+    const report = await safetyRun({ seed, exchanges: 3000, collisions: false })
     assertSafe(report)
   })
 
@@ -63,25 +63,25 @@ describe('safety: any faults, up to 30 % of all answers', function () {
 
 describe('safety: the run has teeth', function () {
   this.timeout(60000)
-  const late = { seed: 9, exchanges: 1500, unplugs: 0, collisions: false, uniform: true }
+  const late = { seed: 9, exchanges: 1000, unplugs: 0, collisions: false, uniform: true }
   // 25 ms after the timeout of 150: an ID is used again only after eight queries
   const faults = [{ kind: 'late', rate: 0.2, argument: 175 }]
   const fixedId = { masterIds: 226, attempts: 1 }
 
   it('without quarantine and with one fixed ID late answers are taken, and the run sees it', async () => {
     const report = await safetyRun({ ...late, faults, device: fixedId, wire: { latenessBound: 1 } })
-    assert.ok(report.wrong.length > 100, String(report.wrong.length))
+    assert.ok(report.wrong.length > 50, String(report.wrong.length))
   })
 
   it('the quarantine alone keeps them out', async () => {
     const report = await safetyRun({ ...late, faults, device: fixedId })
     assertSafe(report)
-    assert.ok(report.faults.late > 200)
+    assert.ok(report.faults.late > 150)
   })
 
   it('the changing ID alone keeps them out', async () => {
     const report = await safetyRun({ ...late, faults, device: { attempts: 1 }, wire: { latenessBound: 1 } })
     assertSafe(report)
-    assert.ok(report.faults.late > 200)
+    assert.ok(report.faults.late > 150)
   })
 })

@@ -21,10 +21,12 @@ const openDevice = (plc, users) => {
 }
 
 /**
- * The device of a PLC's configuration: made for its first user, given back with its last.
+ * The device of a PLC's configuration: made for its first user, given back when a deploy has left it without one. In the middle of a
+ * deploy a changed user goes and comes back: the port stays open for it.
  * @param {any} plc the config node
+ * @param {{ on: Function, off: Function }} events of the runtime
  */
-const deviceHolder = plc => {
+const deviceHolder = (plc, events) => {
   const users = new Map()
   /** @type {{ lease: any, device: any } | null} */
   let open = null
@@ -38,6 +40,11 @@ const deviceHolder = plc => {
     open = null
     return closing
   }
+
+  const settle = () => {
+    if (users.size === 0) release()
+  }
+  events.on('flows:started', settle)
 
   return {
     /**
@@ -56,14 +63,16 @@ const deviceHolder = plc => {
       tell({ state, reason })
       return open.device
     },
-    /** @returns {Promise<void> | undefined} of the port's close, if this was the last user */
+    /** @param {any} node that attached */
     detach(node) {
       users.delete(node)
       if (plc.users[node.id] === node) delete plc.users[node.id]
       if (plc.lineNode?.users[node.id] === node) delete plc.lineNode.users[node.id]
-      return users.size === 0 ? release() : undefined
     },
-    release
+    close() {
+      events.off('flows:started', settle)
+      return release()
+    }
   }
 }
 

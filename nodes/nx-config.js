@@ -6,7 +6,7 @@ const { testHandler } = require('./test-read')
 
 const findLine = (RED, plc) => {
   const line = RED.nodes.getNode(plc.settings.line)
-  if (!line) throw new PlcError('NO_CONFIGURATION', { node: plc.name || plc.id, what: 'line' })
+  if (line?.type !== 'plc-line') throw new PlcError('NO_CONFIGURATION', { node: plc.name || plc.id, what: 'line' })
   return line
 }
 
@@ -31,12 +31,12 @@ module.exports = function (RED) {
       this.fault = error
       this.error(error)
     }
-    const holder = deviceHolder(this)
+    const holder = deviceHolder(this, RED.events)
     this.attach = holder.attach
     this.detach = holder.detach
     this.on('close', (_removed, done) => {
       this.lineNode?.plcs.leave(this)
-      holder.release().then(
+      holder.close().then(
         () => done(),
         () => done()
       )

@@ -5,7 +5,7 @@
  * compares it with the defaults of the .html files, and docs/nodes.md lists it. Pure: it imports nothing, so that the browser can have it too.
  */
 
-/** @typedef {{ kind: string, fallback: any, least?: number, most?: number, known?: string[], whole?: boolean, except?: [number, number], needed?: boolean }} Row */
+/** @typedef {{ kind: string, fallback: any, least?: number, most?: number, known?: string[], whole?: boolean, except?: [number, number], needed?: boolean, says?: string }} Row */
 
 const text = (fallback = '', more = {}) => ({ kind: 'text', fallback, ...more })
 const number = (fallback, least, most, more = {}) => ({ kind: 'number', fallback, least, most, whole: true, ...more })
@@ -39,7 +39,7 @@ const PROPERTIES = {
   'nx-config': {
     name: text(),
     line: node(),
-    station: number('', 0, 255, { except: [192, 254], needed: true }),
+    station: number('', 0, 255, { except: [192, 254], says: '0 to 191, or 255', needed: true }),
     steps: choice('2', '2', '4'),
     timeout: number(3000, 10, 600000),
     attempts: number(3, 1, 20),
@@ -59,7 +59,7 @@ const PROPERTIES = {
     plc: node(),
     itemsType: choice('list', 'list', 'msg'),
     items: list(),
-    interval: number(1000, 0, 86400000),
+    interval: number(1000, 0, 86400000, { except: [1, 9], says: '0, or 10 to 86400000' }),
     format: choice('object', 'object', 'message', 'envelope', 'list'),
     badValues: choice('omit', 'omit', 'null'),
     ranges: choice('array', 'array', 'values'),
@@ -127,9 +127,7 @@ const readProperty = (row, given) => {
  * @param {Row} row
  */
 const allowed = row => {
-  if (row.kind === 'number') {
-    return row.except ? `${row.least} to ${row.except[0] - 1}, or ${row.most}` : `${row.least} to ${row.most}`
-  }
+  if (row.kind === 'number') return row.says ?? `${row.least} to ${row.most}`
   return row.known ? row.known.join(', ') : row.kind
 }
 

@@ -54,7 +54,7 @@ const deployReport = (RED, node) => {
 
 const findPlc = (RED, settings, node) => {
   const plc = RED.nodes.getNode(settings.plc)
-  if (!plc) throw new PlcError('NO_CONFIGURATION', { node: node.name || node.type, what: 'plc' })
+  if (plc?.type !== 'nx-config') throw new PlcError('NO_CONFIGURATION', { node: node.name || node.type, what: 'plc' })
   return plc
 }
 
@@ -68,17 +68,7 @@ const openSession = (RED, node, { type, config, start }) => {
   const display = statusDisplay(RED, node)
   const report = deployReport(RED, node)
   /** @type {any} */
-  const session = {
-    node,
-    display,
-    settings: null,
-    plc: null,
-    device: null,
-    fault: null,
-    closed: false,
-    failed: null,
-    warn: report.add
-  }
+  const session = { node, display, warn: report.add, closed: false, fault: null }
   /** @type {any} */
   let stop
   const attached = () => {
@@ -104,10 +94,8 @@ const openSession = (RED, node, { type, config, start }) => {
     display.stop()
     report.stop()
     stop?.()
-    Promise.resolve(session.plc?.detach(node)).then(
-      () => done(),
-      () => done()
-    )
+    session.plc?.detach(node)
+    done()
   })
   return session
 }

@@ -44,7 +44,7 @@ var nxlineSerialPlc = (() => {
         "nx-config": {
           name: text(),
           line: node(),
-          station: number("", 0, 255, { except: [192, 254], needed: true }),
+          station: number("", 0, 255, { except: [192, 254], says: "0 to 191, or 255", needed: true }),
           steps: choice("2", "2", "4"),
           timeout: number(3e3, 10, 6e5),
           attempts: number(3, 1, 20),
@@ -64,7 +64,7 @@ var nxlineSerialPlc = (() => {
           plc: node(),
           itemsType: choice("list", "list", "msg"),
           items: list(),
-          interval: number(1e3, 0, 864e5),
+          interval: number(1e3, 0, 864e5, { except: [1, 9], says: "0, or 10 to 86400000" }),
           format: choice("object", "object", "message", "envelope", "list"),
           badValues: choice("omit", "omit", "null"),
           ranges: choice("array", "array", "values"),
@@ -114,9 +114,7 @@ var nxlineSerialPlc = (() => {
         return READERS[row.kind](row, given);
       };
       var allowed = (row) => {
-        if (row.kind === "number") {
-          return row.except ? `${row.least} to ${row.except[0] - 1}, or ${row.most}` : `${row.least} to ${row.most}`;
-        }
+        if (row.kind === "number") return row.says ?? `${row.least} to ${row.most}`;
         return row.known ? row.known.join(", ") : row.kind;
       };
       var APPLIES = { path: "serial", host: "tcp", port: "tcp" };
@@ -552,11 +550,25 @@ var nxlineSerialPlc = (() => {
       }
       function decodeFrame(bytes, start = 0) {
         const length = frameLength(bytes, start);
-        if (length === 0 || bytes.length - start < length || !crcFits(bytes, start, length)) return null;
+        return length > 0 && bytes.length - start >= length && crcFits(bytes, start, length) ? openFrame(bytes, start) : null;
+      }
+      function openFrame(bytes, start = 0) {
+        const length = frameLength(bytes, start);
         const info = Buffer.from(bytes.buffer, bytes.byteOffset + start + HEADER, length - OVERHEAD);
         return { to: bytes[start], from: bytes[start + 1], fn: bytes[start + 2], info, length };
       }
-      module.exports = { SHORTEST, LONGEST, MOST_INFO, HEADER, OVERHEAD, encodeFrame, frameLength, crcFits, decodeFrame };
+      module.exports = {
+        SHORTEST,
+        LONGEST,
+        MOST_INFO,
+        HEADER,
+        OVERHEAD,
+        encodeFrame,
+        frameLength,
+        crcFits,
+        decodeFrame,
+        openFrame
+      };
     }
   });
 

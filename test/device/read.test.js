@@ -1,7 +1,7 @@
 'use strict'
 
 const assert = require('node:assert/strict')
-const { PRIORITY } = require('../../lib')
+const { PRIORITY, PlcError } = require('../../lib')
 const { bench } = require('./support')
 
 const code = expected => error => error.code === expected
@@ -110,7 +110,6 @@ describe('NX PLC: reading', () => {
     b.lease.run = (make, options) => {
       if (!options.label.startsWith('readMixed')) return run.call(b.lease, make, options)
       mixed++
-      const { PlcError } = require('../../lib')
       return Promise.reject(new PlcError('PLC_WRONG_FUNCTION', { station: 1 }))
     }
     assert.deepEqual(values(await read(['M0', 'K5', 'K9.1'])), { M0: 0, K5: 0, K9_1: false })
@@ -189,6 +188,49 @@ describe('NX PLC: reading', () => {
     await read(['M1'])
     await read(['M0'])
     assert.equal(b.device.stats.repeats, 4)
+  })
+
+  it('does not repeat by an RR after bytes from nowhere, or a reconnect', async () => {
+    start({ plc: { soleMaster: true } })
+    for (let n = 0; n < 2; n++) await read(['M0'])
+    assert.equal(b.device.stats.repeats, 1)
+    b.wire.noise(Buffer.from([0x55]))
+    await b.clock.advance(100)
+    await read(['M0'])
+    assert.equal(b.device.stats.repeats, 1)
+    b.wire.unplug()
+    b.wire.plug()
+    await b.clock.advance(20000)
+    assert.deepEqual(values(await read(['M0'])), { M0: 0 })
+    assert.equal(b.device.stats.repeats, 1)
+  })
+
+  it('a master ID whose answer failed is used again later', async () => {
+    const masters = []
+    start({
+      plc: { attempts: 1 },
+      sim: { stations: [{ station: 1, onExecute: ({ master }) => masters.push(master) }] }
+    })
+    b.faults.once('silent')
+    await read(['M0'])
+    const [failed] = masters.splice(0)
+    for (let n = 0; n < 8; n++) await read(['M0'])
+    assert.equal(masters.includes(failed), true)
+  })
+
+  it('keeps what was read before the line broke in the middle of the search for a bad address', async () => {
+    start({ sim: { stations: [{ station: 1, areas: [{ area: 'W', words: 100 }] }] } })
+    const { run } = b.lease
+    let count = 0
+    b.lease.run = (make, options) => {
+      if (++count < 3) return run.call(b.lease, make, options)
+      return Promise.reject(new PlcError('LINE_DOWN', { line: 'x', reason: 'y' }))
+    }
+    const [first, last] = await read(['W0..W50', 'W51..W101'])
+    delete b.lease.run
+    assert.equal(first.quality, 'good')
+    assert.equal(last.code, 'LINE_DOWN')
+    assert.equal(count, 3)
   })
 
   it('values that mean nothing are bad, not numbers', async () => {

@@ -7,7 +7,8 @@ const tags = [
   { name: 'setpoint', address: 'K10', type: 'int16', scale: 0.1, min: 0, max: 80, writable: true },
   { name: 'level', address: 'K20:float32', min: -5, max: 5, writable: true },
   { name: 'pump', address: 'K127.12', writable: true },
-  { name: 'fixedOnly', address: 'K30' }
+  { name: 'fixedOnly', address: 'K30' },
+  { name: 'highFirst', address: 'K50:float32', wordOrder: 'high', max: 5 }
 ]
 const entry = (item, value) => ({ item, value })
 
@@ -69,6 +70,10 @@ describe('NX PLC: writing', () => {
     [[entry('K8..K11', [1, 2, 3, 4])], 'NOT_WRITABLE', true],
     [[entry('K21', 5)], 'NOT_WRITABLE', true],
     [[entry('@0x0154', 5)], 'NOT_WRITABLE', true],
+    [[entry('K21:float32', 1)], 'NOT_WRITABLE', true],
+    [[entry('K19:float32', 1)], 'NOT_WRITABLE', true],
+    [[entry('K50:float32', 1)], 'NOT_WRITABLE', true],
+    [[entry('@0x0154:float32', -6)], 'VALUE_OUT_OF_RANGE', true],
     [[entry('@0x0154:float32', 6)], 'VALUE_OUT_OF_RANGE', true],
     [[entry('W0', 1)], 'NOT_WRITABLE', true],
     [[entry('W0.3', true)], 'NOT_WRITABLE', true],
@@ -130,6 +135,9 @@ describe('NX PLC: writing', () => {
     start({ plc: { areas: [{ area: 'W', confirmed: true }] } })
     assert.equal((await write([entry('W3:int32', -2)], { fixed: true })).outcome, 'confirmed')
     assert.equal(b.station.get('W3', 'int32'), -2)
+    const bit = await write([entry('W3.4', true)], { fixed: true })
+    assert.equal(bit.code, 'NOT_WRITABLE')
+    assert.match(bit.text, /only words/)
   })
 
   it('an unanswered write is unknown, and the station sees it exactly once', async () => {
@@ -202,6 +210,17 @@ describe('NX PLC: writing', () => {
     const outcome = await write([entry('K0', 5)])
     assert.deepEqual([outcome.outcome, outcome.code], ['refused', 'PLC_NOT_PERFORMED'])
     assert.equal(b.station.writes.size, 0)
+  })
+
+  it('the acknowledgement that the manual prints counts, but not while a bit write is unanswered', async () => {
+    start({ sim: { stations: [{ station: 1, printedAck: true }] } })
+    assert.equal((await write([entry('K0', 1)])).outcome, 'confirmed')
+    assert.equal(b.device.stats.nonStandardAcks, 1)
+    b.faults.once('silent')
+    assert.equal((await write([entry('K1.0', true)])).outcome, 'unknown')
+    assert.equal((await write([entry('K0', 2)])).outcome, 'unknown')
+    await b.run(b.device.read(['K0']))
+    assert.equal((await write([entry('K0', 3)])).outcome, 'confirmed')
   })
 
   it('what never went out has failed', async () => {

@@ -53,7 +53,11 @@ function stationsOf(text) {
   return numbers
 }
 
-/** @param {string[]} args */
+/**
+ * The settings that a command line asks for.
+ * @param {string[]} args
+ * @throws {PlcError} BAD_SETTING
+ */
 function read(args) {
   const options = Object.fromEntries(Object.entries(OPTIONS).map(([name, { type }]) => [name, { type }]))
   let parsed
@@ -107,7 +111,11 @@ async function main(args) {
   process.exit(0)
 }
 
-main(process.argv.slice(2)).catch(error => {
-  console.error(error instanceof PlcError ? `${error.message}\nTry --help.` : error)
-  process.exitCode = error instanceof PlcError ? 2 : 1
-})
+if (require.main === module) {
+  main(process.argv.slice(2)).catch(error => {
+    console.error(error instanceof PlcError ? `${error.message}\nTry --help.` : error)
+    process.exitCode = error instanceof PlcError ? 2 : 1
+  })
+}
+
+module.exports = { read }

@@ -34,7 +34,7 @@ describe('safety: any faults, up to 30 % of all answers', function () {
   ]
   for (const [name, options] of cases) {
     it(String(name), async () => {
-      const report = await safetyRun({ exchanges: 5000, ...Object(options) })
+      const report = await safetyRun({ exchanges: 4000, ...Object(options) })
       assertSafe(report)
       assertBusy(report, 4000)
     })

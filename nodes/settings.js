@@ -13,6 +13,8 @@ const REASONS = {
   list: () => 'a list is needed'
 }
 
+const shown = value => (value === undefined || value === null || value === '' ? 'empty' : value)
+
 const readOne = (type, name, config) => {
   const row = PROPERTIES[type][name]
   const { value, problem, variable } = readProperty(row, config[name])
@@ -21,7 +23,8 @@ const readOne = (type, name, config) => {
   if (problem === 'missing' && row.kind === 'node') {
     throw new PlcError('NO_CONFIGURATION', { node: config.name || type, what: name })
   }
-  if (problem) throw new PlcError('BAD_SETTING', { setting: name, value: config[name], reason: REASONS[problem](row) })
+  if (problem)
+    throw new PlcError('BAD_SETTING', { setting: name, value: shown(config[name]), reason: REASONS[problem](row) })
   return value
 }
 

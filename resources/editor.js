@@ -1679,8 +1679,9 @@ var nxlineSerialPlc = (() => {
         const label = $("<label>").css({ width: "auto", margin: 0, display: "inline-flex", alignItems: "center", whiteSpace: "nowrap" }).attr("title", t(`tooltip.${name}`)).append(box).append(document.createTextNode(t(`column.${name}`)));
         return { box, label };
       };
+      var mark = (text) => $("<span>").css({ color: "var(--red-ui-secondary-text-color)", whiteSpace: "nowrap", fontSize: "12px" }).text(text);
       var flex = (...children) => $("<div>").css({ display: "flex", gap: "4px", alignItems: "center", marginBottom: "3px" }).append(children);
-      module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex };
+      module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex, mark };
     }
   });
 
@@ -1818,7 +1819,7 @@ var nxlineSerialPlc = (() => {
       var { parseExpression } = require_item();
       var { readTags } = require_tags();
       var { describe, hex, notationOf, unsure } = require_model();
-      var { cell, flex, note, pick, say, tick } = require_widgets();
+      var { cell, flex, mark, note, pick, say, tick } = require_widgets();
       var { errorText, reasonOf, t } = require_texts();
       var TYPES = ["", "bool", "uint16", "int16", "uint32", "int32", "float32", "bcd16", "bcd32", "string[8]"];
       var rowsOf = (list) => list.editableList("items").toArray().map((row) => row.data("nxline").read());
@@ -1855,7 +1856,7 @@ var nxlineSerialPlc = (() => {
           unit: cell("unit", data.unit, { width: "52px" }),
           scale: cell("scale", data.scale, { width: "58px" }),
           offset: cell("offset", data.offset, { width: "58px" }),
-          deadband: cell("deadband", data.deadband, { width: "72px" }),
+          deadband: cell("deadband", data.deadband, { width: "52px" }),
           wordOrder: pick("wordOrder", data.wordOrder === "low" ? "" : data.wordOrder, order),
           min: cell("min", data.min, { width: "52px" }),
           max: cell("max", data.max, { width: "52px" }),
@@ -1875,12 +1876,8 @@ var nxlineSerialPlc = (() => {
         const judge = () => judgeTag(read(), message, context);
         container.append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit)).append(
           flex(
-            fields.scale,
-            fields.offset,
-            fields.deadband,
-            fields.wordOrder,
-            fields.min,
-            fields.max,
+            ...[mark("×"), fields.scale, mark("+"), fields.offset, mark(t("column.deadband")), fields.deadband],
+            ...[fields.wordOrder, mark(t("column.min")), fields.min, mark(t("column.max")), fields.max],
             fields.writable.label
           )
         ).append(message).on("input change", judge);
@@ -1989,6 +1986,7 @@ var nxlineSerialPlc = (() => {
       var { areaTable, exportTags, importTags, rowsOf, tagTable } = require_table();
       var { fillDefaults, tabs } = require_widgets();
       var { errorText, t } = require_texts();
+      var dialogHeight = 0;
       var PREFIX = "node-config-input-";
       var value = (name) => $(`#${PREFIX}${name}`).val();
       var plcLabel = (plc) => t("editor.station", { station: plc.station === "" ? "?" : plc.station });
@@ -2069,7 +2067,10 @@ var nxlineSerialPlc = (() => {
           $(".nxline-writing").toggle($(this).val() !== "read");
           $(".nxline-reading").toggle($(this).val() === "read");
         }).trigger("change");
-        $("#nxline-nx-tags").on("nxline-shown", judgeAll);
+        $("#nxline-nx-tags").on("nxline-shown", () => {
+          fitTags();
+          judgeAll();
+        });
         tabs("nxline-nx-tabs", [
           ["nxline-nx-plc", t("tab.plc")],
           ["nxline-nx-tags", t("tab.tags")],
@@ -2082,7 +2083,14 @@ var nxlineSerialPlc = (() => {
         node.tags = tagRows();
         done();
       };
-      var resizePlc = (size) => $("#nxline-nx-tag-list").editableList("height", Math.max(200, size.height - 190));
+      var fitTags = () => {
+        const list = $("#nxline-nx-tag-list");
+        if (dialogHeight > 0 && list.is(":visible")) list.editableList("height", Math.max(200, dialogHeight - 150));
+      };
+      var resizePlc = (size) => {
+        dialogHeight = size.height;
+        fitTags();
+      };
       module.exports = { editPlc, savePlc, resizePlc, plcLabel };
     }
   });
@@ -2180,6 +2188,7 @@ var nxlineSerialPlc = (() => {
         });
         (node.items || []).forEach((text) => list.editableList("addItem", { text }));
         if (!node.items || node.items.length === 0) list.editableList("addItem", { text: "" });
+        setTimeout(() => list.closest(".red-ui-editableList-container").scrollTop(0), 0);
         $(`#${PREFIX}itemsType`).on("change", function() {
           $(".nxline-list").toggle($(this).val() === "list");
           showExample();
@@ -2194,7 +2203,7 @@ var nxlineSerialPlc = (() => {
       var resizeRead = (size) => {
         const others = $("#dialog-form > div:visible").not(".nxline-list").toArray();
         const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0);
-        $("#nxline-read-items").editableList("height", Math.max(140, size.height - used - 100));
+        $("#nxline-read-items").editableList("height", Math.max(190, size.height - used - 100));
       };
       var readLabel = (node) => {
         if (node.itemsType === "msg") return "msg.items";

@@ -118,6 +118,8 @@ const editRead = node => {
   })
   ;(node.items || []).forEach(text => list.editableList('addItem', { text }))
   if (!node.items || node.items.length === 0) list.editableList('addItem', { text: '' })
+  // a new row scrolls into view: begin at the first one
+  setTimeout(() => list.closest('.red-ui-editableList-container').scrollTop(0), 0)
   $(`#${PREFIX}itemsType`)
     .on('change', function () {
       $('.nxline-list').toggle($(this).val() === 'list')
@@ -138,7 +140,7 @@ const saveRead = node => {
 const resizeRead = size => {
   const others = $('#dialog-form > div:visible').not('.nxline-list').toArray()
   const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0)
-  $('#nxline-read-items').editableList('height', Math.max(140, size.height - used - 100))
+  $('#nxline-read-items').editableList('height', Math.max(190, size.height - used - 100))
 }
 
 /** The label of a reader without a name. */

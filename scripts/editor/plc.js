@@ -8,6 +8,8 @@ const { errorText, t } = require('./texts')
 
 /** The dialog of nx-config. */
 
+let dialogHeight = 0
+
 const PREFIX = 'node-config-input-'
 const value = name => $(`#${PREFIX}${name}`).val()
 
@@ -117,7 +119,10 @@ const editPlc = node => {
       $('.nxline-reading').toggle($(this).val() === 'read')
     })
     .trigger('change')
-  $('#nxline-nx-tags').on('nxline-shown', judgeAll)
+  $('#nxline-nx-tags').on('nxline-shown', () => {
+    fitTags()
+    judgeAll()
+  })
   tabs('nxline-nx-tabs', [
     ['nxline-nx-plc', t('tab.plc')],
     ['nxline-nx-tags', t('tab.tags')],
@@ -133,7 +138,16 @@ const savePlc = node => {
   done()
 }
 
-/** oneditresize of nx-config: the tag table takes the height. */
-const resizePlc = size => $('#nxline-nx-tag-list').editableList('height', Math.max(200, size.height - 190))
+/** The tag table takes the height that the dialog has; a list that is hidden cannot be measured. */
+const fitTags = () => {
+  const list = $('#nxline-nx-tag-list')
+  if (dialogHeight > 0 && list.is(':visible')) list.editableList('height', Math.max(200, dialogHeight - 150))
+}
+
+/** oneditresize of nx-config. */
+const resizePlc = size => {
+  dialogHeight = size.height
+  fitTags()
+}
 
 module.exports = { editPlc, savePlc, resizePlc, plcLabel }

@@ -4,7 +4,7 @@ const { tagsFromCsv, tagsToCsv } = require('../../lib/tag/csv')
 const { parseExpression } = require('../../lib/tag/item')
 const { readTags } = require('../../lib/tag/tags')
 const { describe, hex, notationOf, unsure } = require('./model')
-const { cell, flex, note, pick, say, tick } = require('./widgets')
+const { cell, flex, mark, note, pick, say, tick } = require('./widgets')
 const { errorText, reasonOf, t } = require('./texts')
 
 /** The tables of nx-config: tags and areas. A row of the list keeps `read()`, its present content. */
@@ -55,7 +55,7 @@ const tagFields = data => {
     unit: cell('unit', data.unit, { width: '52px' }),
     scale: cell('scale', data.scale, { width: '58px' }),
     offset: cell('offset', data.offset, { width: '58px' }),
-    deadband: cell('deadband', data.deadband, { width: '72px' }),
+    deadband: cell('deadband', data.deadband, { width: '52px' }),
     wordOrder: pick('wordOrder', data.wordOrder === 'low' ? '' : data.wordOrder, order),
     min: cell('min', data.min, { width: '52px' }),
     max: cell('max', data.max, { width: '52px' }),
@@ -79,12 +79,8 @@ const addTag = (container, data, context) => {
     .append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit))
     .append(
       flex(
-        fields.scale,
-        fields.offset,
-        fields.deadband,
-        fields.wordOrder,
-        fields.min,
-        fields.max,
+        ...[mark('×'), fields.scale, mark('+'), fields.offset, mark(t('column.deadband')), fields.deadband],
+        ...[fields.wordOrder, mark(t('column.min')), fields.min, mark(t('column.max')), fields.max],
         fields.writable.label
       )
     )

@@ -125,7 +125,11 @@ const tick = (name, value) => {
   return { box, label }
 }
 
+/** A sign or word between two cells. */
+const mark = text =>
+  $('<span>').css({ color: 'var(--red-ui-secondary-text-color)', whiteSpace: 'nowrap', fontSize: '12px' }).text(text)
+
 const flex = (...children) =>
   $('<div>').css({ display: 'flex', gap: '4px', alignItems: 'center', marginBottom: '3px' }).append(children)
 
-module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex }
+module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex, mark }

@@ -27,12 +27,12 @@ const signals = ({ dtr, rts }) => {
   return { dtr: dtr !== 'off', rts: rts !== 'off' }
 }
 
-/** The device behind a stable name: what is claimed. A name that leads nowhere yet stands for itself. */
-const realPath = path => {
+/** The device behind a stable name; null: it leads nowhere. */
+const deviceOf = path => {
   try {
     return fs.realpathSync(path)
   } catch {
-    return path
+    return null
   }
 }
 
@@ -48,6 +48,8 @@ class SerialTransport {
   #handlers = null
   #delay = null
   #state = 'new'
+  /** @type {any} */
+  #device = null
   #closed = []
   #writes = new Set()
 
@@ -58,8 +60,9 @@ class SerialTransport {
     this.#pace = createPace(clock)
   }
 
+  /** What is claimed. A name that leads nowhere yet stands for itself. */
   id() {
-    return realPath(this.#settings.path)
+    return deviceOf(this.#settings.path) ?? this.#settings.path
   }
 
   open(handlers) {
@@ -67,6 +70,7 @@ class SerialTransport {
     const { SerialPort } = require('serialport')
     this.#handlers = handlers
     this.#state = 'opening'
+    this.#device = deviceOf(this.#settings.path)
     const binding = pacedBinding(this.#binding ?? SerialPort.binding, this.#pace)
     const port = new SerialPort({ ...portOptions(this.#settings), binding: /** @type {any} */ (binding) })
     this.#port = port
@@ -141,11 +145,12 @@ class SerialTransport {
     this.#pace.hint(at)
   }
 
-  /** A request was not answered: is the port still there? */
+  /** A request was not answered: is the port still there, or has the system not told that it went? */
   check() {
-    if (this.#binding) return
-    fs.stat(this.#settings.path, error => {
-      if (error?.code === 'ENOENT' && this.#state === 'open') this.#lose(error)
+    if (!this.#device || this.#state !== 'open') return
+    fs.realpath(this.#settings.path, (error, device) => {
+      if (this.#state !== 'open' || (!error && device === this.#device)) return
+      if (!error || error.code === 'ENOENT') this.#lose(error)
     })
   }
 

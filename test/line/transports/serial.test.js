@@ -256,6 +256,30 @@ describe('serial transport over other bindings', () => {
     assert.equal(inner.isOpen, false)
   })
 
+  for (const [what, change] of [
+    ['went', name => fs.unlinkSync(name)],
+    ['leads to another device', name => (fs.unlinkSync(name), fs.symlinkSync('/dev/null', name))]
+  ]) {
+    it(`finds out after an unanswered request that the name ${what}`, async () => {
+      const folder = tempFolder()
+      const name = path.join(folder, 'port')
+      fs.symlinkSync('/dev/zero', name)
+      binding.createPort(name)
+      const told = []
+      const gone = new Promise(resolve => told.push(resolve))
+      const transport = await opened(serialOver({ binding })(settings({ path: name }), realClock), {
+        closed: error => told[0](error.code)
+      })
+      transport.check()
+      await new Promise(resolve => setTimeout(resolve, 10))
+      change(name)
+      transport.check()
+      assert.equal(await gone, 'PORT_GONE')
+      await closed(transport)
+      fs.rmSync(folder, { recursive: true })
+    })
+  }
+
   it('tells once that the port is gone, though both error and close come', async () => {
     binding.createPort('/dev/mock')
     let inner

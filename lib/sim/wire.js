@@ -60,7 +60,7 @@ function createParty(wire, station) {
   const party = { station, busyUntil: 0, off: false, previous: null, hear: /** @type {any} */ (null) }
   party.hear = (bytes, times) => {
     if (party.off) return
-    for (const job of station.receive(bytes, times)) serve(wire, party, job)
+    for (const job of station.receive(bytes, times)) serve(wire, party, { ...job, heard: times.end })
   }
   return party
 }
@@ -74,16 +74,18 @@ function serve(wire, party, job) {
     clock.setTimer(() => (party.off = false), fault.argument, { quiet: true })
     return
   }
+  // by the wire's own time: on a real clock a timer that comes late delays no byte
+  const due = job.heard + job.turnaround
   const answer = () => {
     const bytes = job.answer(fault?.kind === 'error' ? fault.argument : undefined)
     if (!bytes) return
     const { previous } = party
     party.previous = bytes
-    if (!fault) return transmit(wire, party, { bytes, at: clock.now() })
+    if (!fault) return transmit(wire, party, { bytes, at: due })
     const context = { bytes, previous, request: job.request, station: party.station, random, argument: fault.argument }
     for (const piece of applyFault(fault.kind, context)) later(wire, party, piece)
   }
-  clock.setTimer(answer, job.turnaround, { quiet: true })
+  clock.setTimer(answer, due - clock.now(), { quiet: true })
 }
 
 function later(wire, party, { bytes, after = 0 }) {

@@ -130,7 +130,6 @@ const CODES = Object.freeze({
     '{line} does not take the bytes: flow control was not released',
     'Switch flow control off, or check the CTS wire.'
   ],
-  STATION_WAITS: ['station {station} is being waited for after a fault', 'Ask again in {wait} ms.'],
   PORT_NOT_FOUND: [
     'the port {path} does not exist',
     'Plug the adapter in, or choose another port. Names in /dev/serial/by-id stay the same.'
@@ -157,7 +156,6 @@ const CODES = Object.freeze({
     '{owner} and {other} use {path} with different settings: {reason}',
     'Use one line configuration, or the same settings.'
   ],
-  MIXED_USE: ['{line} is used for {used}, it cannot also be used for {wanted}', 'Use a line of its own.'],
   SUPERSEDED: [
     '{item} was not written: a newer value came while this one waited',
     'Nothing to do; switch "only the latest" off in the node to write every value.'

@@ -29,8 +29,9 @@ function levelOf(file, from) {
   const [top, second] = file.split('/')
   if (top === 'nodes') return 'nodes'
   if (top !== 'lib') return top
-  if (file === 'lib/sim/index.js' && from !== 'sim') return 'sim/index'
-  return second.replace(/\.js$/, '')
+  if (['lib/sim', 'lib/sim/index.js'].includes(file) && from !== 'sim') return 'sim/index'
+  // `require('../lib')` is the door
+  return (second ?? 'index').replace(/\.js$/, '')
 }
 
 /** Why `level` may not import `name`, or null. */

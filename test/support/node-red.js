@@ -112,15 +112,17 @@ async function startNodeRed(options = {}) {
   const url = `http://127.0.0.1:${port}`
   const remove = () => fs.rmSync(userDir, { recursive: true, force: true })
   const ended = () => child.exitCode !== null || child.signalCode !== null
+  const up = () => /Started flows|missing types/.test(log) && /now running at/.test(log)
+  let comms = null
   try {
-    await until(() => /Started flows|missing types/.test(log) || ended(), { what: () => `Node-RED:\n${log}` })
+    await until(() => up() || ended(), { what: () => `Node-RED:\n${log}` })
     if (ended()) throw new Error(`Node-RED ended:\n${log}`)
+    if (!settings || !('adminAuth' in settings)) comms = await listen(url)
   } catch (error) {
     child.kill('SIGKILL')
     remove()
     throw error
   }
-  const comms = settings && 'adminAuth' in settings ? null : await listen(url)
   const stop = async () => {
     await comms?.close()
     child.kill('SIGTERM')

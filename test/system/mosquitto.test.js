@@ -1,0 +1,102 @@
+'use strict'
+
+/** The demo's flow with real Mosquitto: it publishes there, and a set value of another MQTT client is written and confirmed. */
+
+const assert = require('node:assert/strict')
+const { execFileSync, spawn } = require('node:child_process')
+const path = require('node:path')
+const { demoFlow } = require('../../examples/demo/flow.js')
+const { startStations } = require('../../examples/demo/stations.js')
+const { startNodeRed, until } = require('../support/node-red.js')
+const { root } = require('../support/source.js')
+const { packedProduct, RUNTIMES, startMosquitto } = require('./support.js')
+
+for (const { name, red, node } of RUNTIMES) {
+  describe(`Mosquitto, ${name}`, function () {
+    this.timeout(60000)
+    let mosquitto, stations, runtime, listener
+    const heard = []
+
+    before(async () => {
+      mosquitto = await startMosquitto()
+      stations = await startStations()
+      listener = spawn('mosquitto_sub', [
+        '-h',
+        '127.0.0.1',
+        '-p',
+        String(mosquitto.port),
+        '-t',
+        'plant/#',
+        '-F',
+        '%t %p'
+      ])
+      let rest = ''
+      listener.stdout.on('data', bytes => {
+        const lines = (rest + bytes).split('\n')
+        rest = lines.pop()
+        for (const line of lines)
+          heard.push([line.slice(0, line.indexOf(' ')), JSON.parse(line.slice(line.indexOf(' ') + 1))])
+      })
+      const dashboard = '@flowfuse/node-red-dashboard'
+      runtime = await startNodeRed({
+        red,
+        node,
+        product: packedProduct(),
+        modules: { [dashboard]: path.join(root, 'node_modules', dashboard) },
+        flow: demoFlow({ line: stations.settings, mqttPort: mosquitto.port })
+      })
+    })
+    after(async () => {
+      await runtime?.stop()
+      listener?.kill()
+      await stations?.close()
+      await mosquitto?.stop()
+    })
+    const hear = (topic, is) =>
+      until(() => heard.find(([at, value]) => at === topic && is(value))?.[1], {
+        what: () => `${topic}: ${JSON.stringify(heard.slice(-5))}\n${runtime.log()}`
+      })
+    const publish = (topic, text) =>
+      execFileSync('mosquitto_pub', [
+        '-h',
+        '127.0.0.1',
+        '-p',
+        String(mosquitto.port),
+        '-q',
+        '1',
+        '-t',
+        topic,
+        '-m',
+        text
+      ])
+
+    it('the values of both PLCs arrive, good and with units', async () => {
+      const { value } = await hear('plant/furnace/temperature', it => it.quality === 'good' && it.unit === '°C')
+      assert.ok(value > 0 && value < 400)
+      for (const topic of ['furnace/heating', 'tank/level', 'tank/flow', 'tank/batches', 'tank/pump', 'tank/lowest']) {
+        await hear(`plant/${topic}`, it => it.quality === 'good')
+      }
+    })
+
+    it('a set value of another client is written once, confirmed and read back', async () => {
+      const [furnace] = stations.line.plcs
+      const wrote = () => [...furnace.writes.values()].reduce((sum, times) => sum + times, 0)
+      const before = wrote()
+      publish('plant/furnace/set/setpoint', '266.5')
+      const outcome = await hear('plant/furnace/outcome/setpoint', it => it.outcome === 'confirmed')
+      assert.deepEqual([outcome.items[0].value, outcome.items[0].outcome], [266.5, 'confirmed'])
+      await hear('plant/furnace/setpoint', it => it.value === 266.5)
+      assert.equal(furnace.get('K0', 'int16'), 2665)
+      assert.equal(wrote() - before, 1)
+    })
+
+    it('one out of its limits is refused, and nothing is written', async () => {
+      const [furnace] = stations.line.plcs
+      const held = furnace.get('K0')
+      publish('plant/furnace/set/setpoint', '900')
+      const outcome = await hear('plant/furnace/outcome/setpoint', it => it.outcome === 'refused')
+      assert.equal(outcome.code, 'VALUE_OUT_OF_RANGE')
+      assert.equal(furnace.get('K0'), held)
+    })
+  })
+}

@@ -269,7 +269,6 @@ var nxlineSerialPlc = (() => {
           "{line} does not take the bytes: flow control was not released",
           "Switch flow control off, or check the CTS wire."
         ],
-        STATION_WAITS: ["station {station} is being waited for after a fault", "Ask again in {wait} ms."],
         PORT_NOT_FOUND: [
           "the port {path} does not exist",
           "Plug the adapter in, or choose another port. Names in /dev/serial/by-id stay the same."
@@ -296,7 +295,6 @@ var nxlineSerialPlc = (() => {
           "{owner} and {other} use {path} with different settings: {reason}",
           "Use one line configuration, or the same settings."
         ],
-        MIXED_USE: ["{line} is used for {used}, it cannot also be used for {wanted}", "Use a line of its own."],
         SUPERSEDED: [
           "{item} was not written: a newer value came while this one waited",
           'Nothing to do; switch "only the latest" off in the node to write every value.'
@@ -952,7 +950,7 @@ var nxlineSerialPlc = (() => {
     "lib/tag/convert.js"(exports, module) {
       "use strict";
       var { PlcError } = require_error();
-      var NUMBER = /^[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?$/i;
+      var NUMBER = /^[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?$/i;
       var HEX = /^0x[0-9a-f]+$/i;
       var BOOLEANS = /* @__PURE__ */ new Map([
         ["true", true],
@@ -1131,10 +1129,11 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { PlcError } = require_error();
       var { parseType } = require_types();
-      var TYPED = /^(.*?)\s*:\s*([a-z]\w*\s*(?:\[[^\]]*\])?)$/i;
+      var TYPED = /^(.*?):\s*([a-z]\w*\s*(?:\[[^\]]*\])?)$/i;
+      var LONGEST = 200;
       var splitType = (text) => {
         const typed = TYPED.exec(text);
-        return typed ? [typed[1], typed[2]] : [text, ""];
+        return typed ? [typed[1].trimEnd(), typed[2]] : [text, ""];
       };
       var keyOf = (text) => {
         const key = text.replace(/\.\./g, "_").replace(/\W+/g, "_");
@@ -1179,36 +1178,42 @@ var nxlineSerialPlc = (() => {
         label: tag ? tag.label : "",
         unit: tag ? tag.unit : ""
       });
-      var parseExpression = (text, notation, { tag } = {}) => {
-        const [addressText, written] = splitType(text.trim());
+      var parseExpression = (expression, notation, { tag, text = expression } = {}) => {
+        const [addressText, written] = splitType(expression.trim());
         const address = notation.parse(addressText.trim());
-        const type = typeFor(text, address, written || tag?.type);
+        const type = typeFor(expression, address, written || tag?.type);
         const item = {
           text,
           name: tag ? tag.name : keyOf(address.text),
           kind: address.kind,
           address: address.address,
           addressText: address.text,
-          ...countOf(text, { address, type, notation }),
+          ...countOf(expression, { address, type, notation }),
           type,
           throughWord: Boolean(address.throughWord),
           areaWritable: address.writable,
-          ...tagged(tag, notation),
-          elements: (
-            /** @type {Item['elements']} */
-            []
-          )
+          ...tagged(tag, notation)
         };
-        item.elements = elementsOf(item, notation);
-        return item;
+        return withElements(item, notation);
+      };
+      var withElements = (item, notation) => {
+        let elements;
+        const get = () => elements ?? (elements = elementsOf(item, notation));
+        return Object.defineProperty(item, "elements", { get, enumerable: true });
       };
       var parseItem = (text, notation) => {
         if (typeof text !== "string" || text.trim() === "") {
           throw new PlcError("BAD_ITEMS", { reason: "an item is a text such as M0 or a tag name" });
         }
+        if (text.length > LONGEST) {
+          throw new PlcError("BAD_ADDRESS", {
+            address: `${text.slice(0, 20)}…`,
+            reason: `it has more than ${LONGEST} characters`
+          });
+        }
         const name = text.trim();
         const tag = notation.tags?.get(name);
-        return tag ? { ...parseExpression(tag.address, notation, { tag }), text: name } : parseExpression(name, notation);
+        return tag ? parseExpression(tag.address, notation, { tag, text: name }) : parseExpression(name, notation);
       };
       var meaning = (item) => `${item.tag ? "tag " : ""}${item.kind} ${item.address} ${item.count} ${item.type.name}`;
       var clashes = (items) => {

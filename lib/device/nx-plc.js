@@ -3,7 +3,7 @@ const { PlcError } = require('../error')
 const { describeAddress } = require('../codec/nx/address')
 const { PRIORITY, realClock } = require('../line')
 const { distinctNames, parseItem, splitType } = require('../tag/item')
-const { pointsOf, resultsOf } = require('./points')
+const { checkTotal, pointsOf, resultsOf } = require('./points')
 const { Reader } = require('./reader')
 const { readSettings } = require('./settings')
 const { Subscription } = require('./subscription')
@@ -11,6 +11,7 @@ const { Talk } = require('./talk')
 const { Writer } = require('./writer')
 
 const MOST_ITEMS = 1000
+const MOST_KNOWN = 100000
 
 /** One OE MAX NX PLC on a line. Made by {@link createNxPlc}. */
 class NxPlc {
@@ -22,6 +23,7 @@ class NxPlc {
   #writer
   #subscriptions = new Set()
   #known = new Map()
+  #weight = 0
   #closed = false
 
   /** @param {Record<string, any>} options of {@link createNxPlc} */
@@ -65,7 +67,12 @@ class NxPlc {
     const known = typeof text === 'string' ? this.#known.get(text) : undefined
     if (known) return known
     const item = parseItem(text, this.#settings.notation)
-    if (this.#known.size > 10 * MOST_ITEMS) this.#known.clear()
+    // bounded by what the items weigh: a range holds an object per address
+    this.#weight += item.count
+    if (this.#weight > MOST_KNOWN) {
+      this.#known.clear()
+      this.#weight = item.count
+    }
     this.#known.set(item.text, item)
     return item
   }
@@ -111,7 +118,9 @@ class NxPlc {
     if (items.length === 0) throw new PlcError('BAD_ITEMS', { reason: 'it is empty' })
     if (items.length > MOST_ITEMS)
       throw new PlcError('TOO_MANY', { count: items.length, unit: 'items', most: MOST_ITEMS })
-    return distinctNames(Array.from(items, text => this.item(text)))
+    const parsed = Array.from(items, text => this.item(text))
+    checkTotal(parsed)
+    return distinctNames(parsed)
   }
 
   /**

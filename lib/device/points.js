@@ -13,6 +13,12 @@ const pointOf = (item, index) => {
   return { kind, address: address + index * type.words, count: type.words }
 }
 
+/** @param {import('../tag/item').Item[]} items @throws {PlcError} TOO_MANY */
+const checkTotal = items => {
+  const total = items.reduce((sum, item) => sum + item.count * item.type.words, 0)
+  if (total > MOST_POINTS) throw new PlcError('TOO_MANY', { count: total, unit: 'addresses', most: MOST_POINTS })
+}
+
 /**
  * The points of items, in order: `item.count` of each.
  * @param {import('../tag/item').Item[]} items
@@ -20,8 +26,7 @@ const pointOf = (item, index) => {
  * @throws {PlcError} TOO_MANY
  */
 const pointsOf = items => {
-  const total = items.reduce((sum, item) => sum + item.count * item.type.words, 0)
-  if (total > MOST_POINTS) throw new PlcError('TOO_MANY', { count: total, unit: 'addresses', most: MOST_POINTS })
+  checkTotal(items)
   return items.flatMap(item => item.elements.map(({ text }, index) => ({ ...pointOf(item, index), text })))
 }
 
@@ -84,4 +89,4 @@ const resultsOf = (items, readings) => {
  * @property {any[]} [elements] of a range: a result per value
  */
 
-module.exports = { MOST_POINTS, pointsOf, resultsOf }
+module.exports = { MOST_POINTS, checkTotal, pointsOf, resultsOf }

@@ -29,6 +29,11 @@ const checkEntries = entries => {
   }
 }
 
+const checkPoints = entries => {
+  const count = entries.reduce((sum, { values }) => sum + values.length, 0)
+  if (count > MOST_POINTS) throw new PlcError('TOO_MANY', { count, unit: 'values to write', most: MOST_POINTS })
+}
+
 const pointsOf = ({ item, values }) =>
   values.map((raw, index) => ({
     kind: item.kind,
@@ -92,13 +97,11 @@ class Writer {
     checkEntries(entries)
     const parsed = entries.map(entry => this.#entry(entry, fixed))
     const points = []
+    checkPoints(parsed)
     for (const entry of parsed) {
       entry.from = points.length
       points.push(...pointsOf(entry))
       entry.to = points.length
-    }
-    if (points.length > MOST_POINTS) {
-      throw new PlcError('TOO_MANY', { count: points.length, unit: 'values to write', most: MOST_POINTS })
     }
     return { entries: parsed, points, requests: planWrites(points, this.#settings.planLimits) }
   }
@@ -190,11 +193,20 @@ class Writer {
   async #verify(points, fates) {
     const last = lastWritten(points, fates)
     if (last.length === 0) return
-    const wanted = last.map(index => points[index])
-    const readings = await this.#reader.read(wanted, { priority: PRIORITY.ASK, fresh: true })
+    const readings = await this.#readBack(last.map(index => points[index]))
     last.forEach((index, at) => {
       fates[index] = judge(fates[index], points[index], readings[at])
     })
+  }
+
+  /** @returns {Promise<any[]>} one reading per point, also where they cannot be asked for: a write that went out has an outcome */
+  async #readBack(points) {
+    try {
+      return await this.#reader.read(points, { priority: PRIORITY.ASK, fresh: true })
+    } catch (caught) {
+      const error = asPlcError(caught, this.#settings.station)
+      return points.map(() => ({ error }))
+    }
   }
 }
 

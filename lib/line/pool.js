@@ -72,9 +72,9 @@ function newEntry(pool, { key, settings, owner }) {
   entry.line = line
   pool.entries.set(key, entry)
   line.open()
-  // the port of the line before may still be on its way to be closed
+  // the ports of the lines before may still be on their way to be closed
   const before = pool.closing.get(key)
-  if (before) before.push(() => line.connect())
+  if (before) before.waiting.push(() => line.connect())
   else line.connect()
   return entry
 }
@@ -102,12 +102,15 @@ function leave(pool, entry, { lease: gone, done }) {
   }
   const { key, line } = entry
   pool.entries.delete(key)
-  const waiting = []
-  pool.closing.set(key, waiting)
+  // a line that was never connected closes at once, while the one before it still holds the port
+  const closing = pool.closing.get(key) ?? { lines: 0, waiting: [] }
+  pool.closing.set(key, closing)
+  closing.lines++
   line.close(() => {
-    if (pool.closing.get(key) === waiting) pool.closing.delete(key)
+    closing.lines--
+    if (closing.lines === 0) pool.closing.delete(key)
     done()
-    for (const next of waiting) next()
+    if (closing.lines === 0) for (const next of closing.waiting) next()
   })
 }
 

@@ -3,7 +3,8 @@ const { PlcError } = require('../error')
 
 /** What a set value may look like in a message: dashboards and MQTT send numbers and switches as text. Pure. */
 
-const NUMBER = /^[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?$/i
+// no two repeats beside each other can take the same digit: a text of a megabyte is refused as fast as it is read
+const NUMBER = /^[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?$/i
 const HEX = /^0x[0-9a-f]+$/i
 const BOOLEANS = new Map([
   ['true', true],

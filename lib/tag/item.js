@@ -42,11 +42,12 @@ const { parseType } = require('./types')
  */
 
 // a raw bit address (`@bit:0x1BFC`) has a colon too, but no type starts with a digit
-const TYPED = /^(.*?)\s*:\s*([a-z]\w*\s*(?:\[[^\]]*\])?)$/i
+const TYPED = /^(.*?):\s*([a-z]\w*\s*(?:\[[^\]]*\])?)$/i
+const LONGEST = 200 // characters of one item: texts come in messages, and what reads them must stay fast
 
 const splitType = text => {
   const typed = TYPED.exec(text)
-  return typed ? [typed[1], typed[2]] : [text, '']
+  return typed ? [typed[1].trimEnd(), typed[2]] : [text, '']
 }
 
 /** An identifier out of an address: Change and Switch nodes and charts split keys at dots. */
@@ -102,31 +103,39 @@ const tagged = (tag, notation) => ({
 /**
  * An address expression with an optional type: `M0`, `K127.12`, `W10:float32`, `W20:string[8]`, `M0..M127`,
  * `W0..W9:float32` (5 values).
- * @param {string} text
+ * @param {string} expression
  * @param {Notation} notation
- * @param {{ tag?: import('./tags').Tag }} [given] the tag that the expression is the address of
+ * @param {{ tag?: import('./tags').Tag, text?: string }} [given] the tag that the expression is the address of; what the user wrote
  * @returns {Item}
  * @throws {PlcError} BAD_ADDRESS, UNKNOWN_AREA, OUT_OF_AREA, BAD_BIT, BAD_TYPE
  */
-const parseExpression = (text, notation, { tag } = {}) => {
-  const [addressText, written] = splitType(text.trim())
+const parseExpression = (expression, notation, { tag, text = expression } = {}) => {
+  const [addressText, written] = splitType(expression.trim())
   const address = notation.parse(addressText.trim())
-  const type = typeFor(text, address, written || tag?.type)
+  const type = typeFor(expression, address, written || tag?.type)
   const item = {
     text,
     name: tag ? tag.name : keyOf(address.text),
     kind: address.kind,
     address: address.address,
     addressText: address.text,
-    ...countOf(text, { address, type, notation }),
+    ...countOf(expression, { address, type, notation }),
     type,
     throughWord: Boolean(address.throughWord),
     areaWritable: address.writable,
-    ...tagged(tag, notation),
-    elements: /** @type {Item['elements']} */ ([])
+    ...tagged(tag, notation)
   }
-  item.elements = elementsOf(item, notation)
-  return item
+  return withElements(item, notation)
+}
+
+/**
+ * A range has thousands of elements: they are made when they are asked for, which is after the whole has been counted.
+ * @returns {Item}
+ */
+const withElements = (item, notation) => {
+  let elements
+  const get = () => (elements ??= elementsOf(item, notation))
+  return Object.defineProperty(item, 'elements', { get, enumerable: true })
 }
 
 /**
@@ -140,9 +149,15 @@ const parseItem = (text, notation) => {
   if (typeof text !== 'string' || text.trim() === '') {
     throw new PlcError('BAD_ITEMS', { reason: 'an item is a text such as M0 or a tag name' })
   }
+  if (text.length > LONGEST) {
+    throw new PlcError('BAD_ADDRESS', {
+      address: `${text.slice(0, 20)}…`,
+      reason: `it has more than ${LONGEST} characters`
+    })
+  }
   const name = text.trim()
   const tag = notation.tags?.get(name)
-  return tag ? { ...parseExpression(tag.address, notation, { tag }), text: name } : parseExpression(name, notation)
+  return tag ? parseExpression(tag.address, notation, { tag, text: name }) : parseExpression(name, notation)
 }
 
 const meaning = item => `${item.tag ? 'tag ' : ''}${item.kind} ${item.address} ${item.count} ${item.type.name}`

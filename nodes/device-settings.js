@@ -1,5 +1,5 @@
 'use strict'
-const { createNxPlc, nxNotation } = require('../lib')
+const { createNxPlc, nxNotation } = require('../lib/index.js')
 
 const LIMITS = ['readWords', 'writeWords', 'readBits', 'writeBits']
 

@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError } = require('../lib')
+const { PlcError } = require('../lib/index.js')
 const { deviceHolder } = require('./device-holder')
 const { readSettings } = require('./settings')
 const { testHandler } = require('./test-read')

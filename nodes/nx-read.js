@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError, createReport, itemsOf, messagesOf } = require('../lib')
+const { PlcError, createReport, itemsOf, messagesOf } = require('../lib/index.js')
 const { openSession } = require('./session')
 const { withCode } = require('./faults')
 

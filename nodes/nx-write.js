@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError, entriesOf } = require('../lib')
+const { PlcError, entriesOf } = require('../lib/index.js')
 const { withCode } = require('./faults')
 const { openSession } = require('./session')
 

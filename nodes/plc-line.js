@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError, listPorts } = require('../lib')
+const { PlcError, listPorts } = require('../lib/index.js')
 const { poolSettings } = require('./line-settings')
 const { sharedPool } = require('./pool')
 const { readSettings } = require('./settings')

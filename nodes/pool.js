@@ -1,5 +1,5 @@
 'use strict'
-const { createPool } = require('../lib')
+const { createPool } = require('../lib/index.js')
 
 /** @type {ReturnType<typeof createPool> | undefined} */
 let pool

@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError, createThrottle } = require('../lib')
+const { PlcError, createThrottle } = require('../lib/index.js')
 const { readSettings } = require('./settings')
 const { fitted, statusOf } = require('./status')
 

@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError } = require('../lib')
+const { PlcError } = require('../lib/index.js')
 const { PROPERTIES, readProperty, allowed, applies } = require('./properties')
 
 const REASONS = {

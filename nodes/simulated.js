@@ -1,5 +1,5 @@
 'use strict'
-const { DEMO, createNxPlc, createRealClock, createWire } = require('../lib/sim')
+const { DEMO, createNxPlc, createRealClock, createWire } = require('../lib/sim/index.js')
 
 // what the examples show beside the simulator's own demo values: K0 is a set value in tenths, M10 follows it, M11 is a load
 const EXAMPLES = [

@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError, listPorts } = require('../lib')
+const { PlcError, listPorts } = require('../lib/index.js')
 const { createDevice, deviceSettings } = require('./device-settings')
 const { PROPERTIES } = require('./properties')
 const { readSettings } = require('./settings')

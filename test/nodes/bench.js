@@ -21,9 +21,9 @@ const NODES = TYPES.map(speaking)
 
 const tick = (ms = 5) => new Promise(resolve => setTimeout(resolve, ms))
 
-/** @param {() => any} check @param {string} [what] */
-const until = async (check, what = 'something') => {
-  const end = Date.now() + 4000
+/** @param {() => any} check @param {string} [what] @param {number} [patience] ms */
+const until = async (check, what = 'something', patience = 4000) => {
+  const end = Date.now() + patience
   for (;;) {
     const found = check()
     if (found) return found

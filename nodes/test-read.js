@@ -57,13 +57,13 @@ const leaseFor = async (RED, { line, plc }) => {
     (settings.transport === 'simulated' ? live.simulated : sameLine(live, { ...settings, name: live.settings.name }))
   ) {
     const undo = live.simulated ? live.plcs.visit(plc) : undefined
-    return { lease: live.lease(OWNER), undo }
+    return { lease: live.lease(OWNER), where: settings, undo }
   }
   if (settings.transport === 'serial') await checkPath(RED, settings.path)
-  if (settings.transport !== 'simulated') return { lease: sharedPool().open(settings, OWNER) }
+  if (settings.transport !== 'simulated') return { lease: sharedPool().open(settings, OWNER), where: settings }
   const simulated = simulatedWire(settings)
   simulated.add(plc)
-  return { lease: sharedPool().open({ ...settings, path: 'test', wire: simulated.wire }, OWNER) }
+  return { lease: sharedPool().open({ ...settings, path: 'test', wire: simulated.wire }, OWNER), where: settings }
 }
 
 const itemToRead = (device, tags) => {
@@ -79,7 +79,7 @@ const itemToRead = (device, tags) => {
 
 const problem = error => ({ code: error.code, message: error.message, details: error.details })
 
-const readOnce = async (lease, settings) => {
+const readOnce = async ({ lease, where }, settings) => {
   const own = { ...settings, attempts: 1, access: 'read' }
   const { device } = createDevice(lease, deviceSettings(own, { name: OWNER.name, stations: [] }))
   const start = performance.now()
@@ -89,7 +89,14 @@ const readOnce = async (lease, settings) => {
     const ms = Math.round(performance.now() - start)
     if (result.quality !== 'bad') return { ok: true, station: settings.station, ms, item, value: result.value }
     const { code, text } = result
-    return { ok: false, reached: code.startsWith('PLC_'), error: { code, message: text } }
+    const { path, host, port } = where
+    const details = {
+      station: settings.station,
+      timeout: settings.timeout,
+      address: item,
+      path: path || `${host}:${port}`
+    }
+    return { ok: false, reached: code.startsWith('PLC_'), error: { code, message: text, details } }
   } finally {
     device.close()
   }
@@ -97,9 +104,9 @@ const readOnce = async (lease, settings) => {
 
 const test = async (RED, body) => {
   const plc = readSettings('nx-config', taken('nx-config', body.plc, liveNode(RED, 'nx-config', body.plc?.id)))
-  const { lease, undo } = await leaseFor(RED, { line: body.line, plc })
+  const { lease, where, undo } = await leaseFor(RED, { line: body.line, plc })
   try {
-    return await readOnce(lease, plc)
+    return await readOnce({ lease, where }, plc)
   } finally {
     undo?.()
     await lease.release()

@@ -130,10 +130,10 @@ var nxlineSerialPlc = (() => {
       var SHARED = "@nxline/node-red-serial-plc/plc-line:";
       var t = (key, values) => RED._(`${SHARED}${key}`, values);
       var errorText = (error) => {
-        if (!error.code) return String(error.message || error);
-        const key = `${SHARED}error.${error.code}`;
-        const text = RED._(key, { ...error.details, defaultValue: error.message });
-        return text && !text.endsWith(`error.${error.code}`) ? text : error.message;
+        const text = String(error.message || error);
+        if (!error.code || !error.details) return text;
+        const translated = RED._(`${SHARED}error.${error.code}`, { ...error.details, defaultValue: text });
+        return /__\w+__/.test(translated) ? text : translated;
       };
       var reasonOf = (error) => errorText(error.cause && error.cause.code ? error.cause : error);
       module.exports = { t, errorText, reasonOf };

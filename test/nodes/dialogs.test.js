@@ -131,5 +131,9 @@ describe('validators', () => {
   it('the reasons come in Korean, too', () => {
     const korean = loadDialogs({ language: 'ko' }).types
     assert.match(korean['nx-config'].defaults.station.validate.call({}, '', {}), /필수/)
+    assert.match(
+      korean['nx-config'].defaults.writableRanges.validate.call({}, 'Q1', {}),
+      /영역 Q이\(가\) 이 국에 없습니다/
+    )
   })
 })

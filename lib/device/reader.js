@@ -60,7 +60,7 @@ class Reader {
     const { joint, due, resting } = this.#groups(points, fresh)
     for (const index of resting) this.#fail([index], this.#absent.get(keyOf(points[index])).error, job)
     // known absent addresses are asked for apart, so that they do not spoil the others' request again
-    const alone = distinct(due, points).map(key => due.filter(index => keyOf(points[index]) === key))
+    const alone = equals(due, points)
     await this.#run(this.#requests([joint, ...alone], job), job)
     return job.readings
   }
@@ -161,6 +161,17 @@ class Reader {
 }
 
 const order = (a, b) => a.kind.localeCompare(b.kind) || a.address - b.address || a.count - b.count
+
+/** Indexes of equal points together. @returns {number[][]} */
+const equals = (indexes, points) => {
+  const groups = new Map()
+  for (const index of indexes) {
+    const key = keyOf(points[index])
+    if (groups.has(key)) groups.get(key).push(index)
+    else groups.set(key, [index])
+  }
+  return [...groups.values()]
+}
 
 const distinct = (indexes, points) => [...new Set(indexes.map(index => keyOf(points[index])))]
 

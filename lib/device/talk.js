@@ -2,6 +2,7 @@
 const { PlcError } = require('../error')
 const { masterIds } = require('../codec/nx/ids')
 const { readDialog, writeDialog } = require('../codec/nx/dialog')
+const { createMasterWatch } = require('./master-watch')
 
 /**
  * One query of an NX station over the line: the master's ID, the repeat by RR, and what is remembered about the station.
@@ -10,7 +11,7 @@ const { readDialog, writeDialog } = require('../codec/nx/dialog')
 
 const memoryOf = (lease, station) => {
   const memory = lease.line.memory(station)
-  memory.nx ??= { ids: {}, lastRead: null, openBitWrite: false }
+  memory.nx ??= { ids: {}, master: {}, lastRead: null, openBitWrite: false }
   return memory.nx
 }
 
@@ -19,6 +20,7 @@ class Talk {
   #settings
   #memory
   #ids
+  #watch
   #counts = { requests: 0, answers: 0, nonStandardAcks: 0, repeats: 0, seenStation: /** @type {number|null} */ (null) }
   // a repeat by RR has no ID of its own that tells late from right, so whatever disturbs the line ends it
   #forget = () => void (this.#memory.lastRead = null)
@@ -30,8 +32,16 @@ class Talk {
     this.#memory = memoryOf(lease, settings.station)
     const { masterIds: ids } = settings
     this.#ids = masterIds({ ids, start: Math.floor(random() * ids.length), memory: this.#memory.ids })
+    this.#watch = createMasterWatch({ memory: this.#memory.master, found: id => this.#tellFixed(id) })
     lease.on('state', this.#forget)
     lease.on('event', this.#forget)
+  }
+
+  #tellFixed(id) {
+    const { station } = this.#settings
+    const cause = `station ${station} answers to the master ID ${id} only`
+    const remedy = `Set the master IDs of the PLC to ${id} alone.`
+    this.#lease.line.report({ event: 'fixedMasterId', station, id, cause, remedy })
   }
 
   /** `{ requests, answers, nonStandardAcks, repeats, seenStation }` */
@@ -69,7 +79,8 @@ class Talk {
     const last = this.#begin()
     const { soleMaster } = this.#settings
     const same = soleMaster && last && last.key === key && last.stray === strayOf(this.#lease)
-    const result = yield* readDialog(query, { ...this.#options(), again: same ? last.master : undefined })
+    const options = { ...this.#options(this.#watch.trial()), again: same ? last.master : undefined }
+    const result = yield* this.#watched(readDialog(query, options), options)
     this.#note(result)
     if (soleMaster) this.#memory.lastRead = { key, master: result.master, stray: strayOf(this.#lease) }
     return result
@@ -84,9 +95,25 @@ class Talk {
     return result
   }
 
-  #options() {
+  *#watched(dialog, { facts, ids }) {
+    const end = code => this.#watch.note({ id: facts.master, trial: ids !== this.#ids, code })
+    try {
+      const result = yield* dialog
+      end()
+      return result
+    } catch (/** @type {any} */ error) {
+      end(error.code)
+      throw error
+    }
+  }
+
+  /** @param {number} [fixed] the one ID to send from */
+  #options(fixed) {
     const { station, steps, timeout, attempts, gap, limits } = this.#settings
-    return { station, steps, timeout, attempts, gap, limits, ids: this.#ids }
+    const ids = fixed === undefined ? this.#ids : { ...this.#ids, take: () => fixed }
+    /** @type {{ master?: number }} */
+    const facts = {}
+    return { station, steps, timeout, attempts, gap, limits, ids, facts }
   }
 
   /** The line begins a run of a station only when no older answer can come any more. */

@@ -131,6 +131,11 @@ class Line extends EventEmitter {
     return this.#quarantine.memory(station)
   }
 
+  /** Tells all who listen of something that a device noticed: `{ event, station, cause, remedy, … }`. */
+  report(event) {
+    this.emit('event', { since: this.#clock.wall(), ...event })
+  }
+
   // --- requests
 
   /**

@@ -1,0 +1,59 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { bench } = require('./support')
+
+describe('NX PLC: a station that answers to one master ID only', () => {
+  let b
+  afterEach(async () => {
+    await b.close()
+    assert.equal(b.clock.pending(), 0, 'a timer is left')
+  })
+  const start = station => {
+    const events = []
+    b = bench({ sim: { stations: [{ station: 1, ...station }] }, plc: { attempts: 1 } })
+    b.lease.on('event', event => events.push(event))
+    const read = async () => (await b.run(b.device.read(['M0'])))[0].code ?? 'good'
+    return { events, read }
+  }
+
+  it('is noticed and reported once with the remedy', async () => {
+    const { events, read } = start({ onlyMaster: 0xe4 })
+    const codes = []
+    for (let i = 0; i < 10; i++) codes.push(await read())
+    // E2 and E3 unheard, E4 answered, then in turn: the next of the row, and E4 again
+    const turn = ['TIMEOUT', 'good']
+    assert.deepEqual(codes, ['TIMEOUT', 'TIMEOUT', 'good', ...turn, ...turn, ...turn, 'TIMEOUT'])
+    const found = events.filter(({ event }) => event === 'fixedMasterId')
+    assert.equal(found.length, 1)
+    assert.deepEqual([found[0].station, found[0].id], [1, 0xe4])
+    assert.match(found[0].remedy, /to 228 alone/)
+    assert.ok(Number.isFinite(found[0].since))
+  })
+
+  it('its last ID is not tried again while an answer to it may still come', async () => {
+    const { events, read } = start({})
+    const masters = () =>
+      b.lease.line.trace().flatMap(({ dir, bytes }) => (dir === 'out' ? [parseInt(bytes.slice(2, 4), 16)] : []))
+    assert.equal(await read(), 'good')
+    b.wire.setOff(1, true)
+    for (let i = 0; i < 4; i++) await read()
+    // E2 answered; E3 silent, E2 tried and silent, then on without it
+    assert.deepEqual(masters(), [0xe2, 0xe3, 0xe2, 0xe4, 0xe5])
+    assert.deepEqual(events, [])
+  })
+
+  it('is not suspected because it was switched off for a while', async () => {
+    const { events, read } = start({})
+    const codes = [await read()]
+    for (let outage = 0; outage < 3; outage++) {
+      b.wire.setOff(1, true)
+      for (let i = 0; i <= outage; i++) codes.push(await read())
+      b.wire.setOff(1, false)
+      for (let i = 0; i < 3; i++) codes.push(await read())
+    }
+    assert.ok(codes.includes('TIMEOUT'))
+    assert.deepEqual(codes.slice(-3), ['good', 'good', 'good'])
+    assert.deepEqual(events, [])
+  })
+})

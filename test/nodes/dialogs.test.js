@@ -45,6 +45,13 @@ describe('node dialogs', () => {
     }
   })
 
+  it('nx-write without a saved number of outputs keeps its second wire', () => {
+    // the editor cuts wires beyond the definition's number where the flow does not give one
+    const { outputs, defaults } = loadDialogs().types['nx-write']
+    assert.equal(outputs, 2)
+    assert.equal(defaults.outputs.value, 1)
+  })
+
   it('palette: category, labels, icons that are there', () => {
     const { types } = loadDialogs()
     assert.equal(types['nx-read'].category, 'serial PLC')

@@ -1,0 +1,164 @@
+'use strict'
+
+/** The editor in a real Chromium: an example imported, every dialog opened, Test pressed, deployed, a value seen. */
+
+const assert = require('node:assert/strict')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+const { startNodeRed } = require('../support/node-red.js')
+const manifest = require('../../package.json')
+const { packedProduct, RUNTIMES, startBrowser } = require('./support.js')
+
+/** Pictures for people; CI keeps none. */
+const pictures = process.env.SERIAL_PLC_PICTURES || path.join(os.tmpdir(), 'serial-plc-pictures')
+
+for (const { name, red, node } of RUNTIMES) {
+  describe(`editor, ${name}`, function () {
+    this.bail(true)
+    this.timeout(120000)
+    let runtime, browser, page
+    const problems = []
+    const picture = what => {
+      const version = /\d/.exec(name)[0]
+      return page.screenshot({ path: path.join(pictures, `${version} ${what}.png`) })
+    }
+    const byId = id => `[id="${id}"]`
+    const nodeOf = (type, label) =>
+      page.evaluate(
+        ([wanted, named]) => {
+          let found
+          window.RED.nodes.eachNode(it => {
+            if (it.type === wanted && (!named || it.name === named)) found = it.id
+          })
+          return found
+        },
+        [type, label]
+      )
+    const openDialog = async (type, label) => {
+      await page
+        .locator(`${byId(await nodeOf(type, label))} .red-ui-flow-node`)
+        .first()
+        .dblclick()
+      await page.locator('#node-dialog-ok').waitFor()
+      await page.waitForFunction(() => !document.querySelector('.red-ui-tray.red-ui-tray-open[style*="transition"]'))
+    }
+    const closeDialog = async () => {
+      await page.locator('#node-dialog-cancel').click()
+      await page.locator('#node-dialog-cancel').waitFor({ state: 'hidden' })
+    }
+    const deploy = async () => {
+      await page.locator('#red-ui-header-button-deploy').click()
+      await page.waitForFunction(() => !window.RED.nodes.dirty())
+    }
+
+    before(async () => {
+      fs.mkdirSync(pictures, { recursive: true })
+      runtime = await startNodeRed({ red, node, product: packedProduct(), flow: [] })
+      browser = await startBrowser()
+      page = await browser.newPage({ viewport: { width: 1400, height: 900 }, locale: 'en-US' })
+      page.setDefaultTimeout(6000)
+      page.on('pageerror', error => problems.push(String(error)))
+      await page.goto(runtime.url)
+      await page.locator('#red-ui-header-button-deploy').waitFor()
+      await page.locator('.red-ui-palette-node').first().waitFor()
+      // the welcome panel of a first start
+      await page.evaluate(() => document.querySelectorAll('.red-ui-popover').forEach(it => it.remove()))
+    })
+    after(async () => {
+      await browser?.close()
+      await runtime?.stop()
+    })
+
+    it('shows the nodes in the palette, found by what people type', async () => {
+      for (const text of ['nx', 'plc']) {
+        await page.locator('#red-ui-palette-search input').fill(text)
+        for (const type of ['nx-read', 'nx-write']) await page.locator(`[data-palette-type="${type}"]`).waitFor()
+      }
+      await picture('palette')
+      await page.locator('#red-ui-palette-search input').fill('')
+    })
+
+    it('imports an example from the menu', async () => {
+      await page.locator('#red-ui-header-button-sidemenu').click()
+      await page.locator('#menu-item-import').click()
+      await page.locator('#red-ui-clipboard-dialog-import-tabs a:has-text("Examples")').click()
+      await page.locator(`.red-ui-treeList-label:visible:has-text("${manifest.name}")`).click()
+      await page.locator('.red-ui-treeList-label:visible:has-text("04 Write with confirmation")').click()
+      await picture('import')
+      await page.locator('#red-ui-clipboard-dialog-ok').click()
+      await page.locator('.red-ui-tab:has-text("Write with confirmation") a').first().click()
+      assert.ok(await nodeOf('nx-write', 'setpoint, verified'))
+      await picture('example')
+    })
+
+    it('opens the dialog of nx-write, through it those of the PLC and of the line', async () => {
+      await openDialog('nx-write', 'setpoint, verified')
+      await picture('nx-write')
+      assert.equal(await page.locator('#node-input-target').inputValue(), 'setpoint')
+      await page.locator('#node-input-lookup-plc').click()
+      await page.locator('#node-config-input-station').waitFor()
+      await page.locator('#node-config-input-timeout').waitFor()
+      await picture('nx-config')
+      await page.locator('#node-config-input-lookup-line, #node-input-lookup-line').first().click()
+      await page.locator('#node-config-input-transport').waitFor()
+      await picture('plc-line')
+      assert.equal(await page.locator('#node-config-input-transport').inputValue(), 'simulated')
+      await page.locator('#node-config-dialog-cancel').click()
+      await page.locator('#node-config-input-transport').waitFor({ state: 'detached' })
+      await page.locator('#node-config-dialog-cancel').click()
+      await page.locator('#node-config-input-station').waitFor({ state: 'detached' })
+      await closeDialog()
+    })
+
+    it('deploys, writes with a button, and shows the outcome', async () => {
+      await deploy()
+      const status = page.locator(
+        `${byId(await nodeOf('nx-write', 'setpoint, verified'))} .red-ui-flow-node-status-label`
+      )
+      const button = page.locator(`${byId(await nodeOf('inject', '215.5 °C'))} .red-ui-flow-node-button-button`)
+      await button.click()
+      await page.waitForFunction(
+        id => /written|confirmed/i.test(document.querySelector(`[id="${id}"]`).textContent),
+        await nodeOf('nx-write', 'setpoint, verified')
+      )
+      assert.match(await status.textContent(), /SIM/)
+      const outcome = await runtime.next(await nodeOf('debug', 'confirmed'))
+      assert.equal(outcome.outcome, 'confirmed')
+      await picture('deployed')
+    })
+
+    it('Test in the dialog of the PLC says that it answers', async () => {
+      await openDialog('nx-write', 'setpoint, verified')
+      await page.locator('#node-input-lookup-plc').click()
+      await page.locator('#nxline-nx-test').click()
+      const result = page.locator('#nxline-nx-test-result')
+      await result.waitFor()
+      await page.waitForFunction(() => /answer/i.test(document.querySelector('#nxline-nx-test-result').textContent))
+      await picture('test')
+      for (const tab of ['tags', 'writing', 'details']) {
+        await page.locator(`#nxline-nx-tabs a[href="#nxline-nx-${tab}"]`).click()
+        await page.locator(`#nxline-nx-${tab}`).waitFor()
+        await picture(`nx-config ${tab}`)
+      }
+      await page.locator('#node-config-dialog-cancel').click()
+      await page.locator('#nxline-nx-test').waitFor({ state: 'detached' })
+      await closeDialog()
+    })
+
+    it('opens the dialog of nx-read', async () => {
+      await page.locator('#red-ui-header-button-sidemenu').click()
+      await page.locator('#menu-item-import').click()
+      await page.locator('#red-ui-clipboard-dialog-import-tabs a:has-text("Examples")').click()
+      await page.locator(`.red-ui-treeList-label:visible:has-text("${manifest.name}")`).click()
+      await page.locator('.red-ui-treeList-label:visible:has-text("03 Read on demand")').click()
+      await page.locator('#red-ui-clipboard-dialog-ok').click()
+      await page.locator('.red-ui-tab:has-text("Read on demand") a').first().click()
+      await openDialog('nx-read', 'temperature, M0..M3')
+      await picture('nx-read')
+      await closeDialog()
+    })
+
+    it('nothing failed in the page meanwhile', () => assert.deepEqual(problems, []))
+  })
+}

@@ -377,8 +377,11 @@ var nxlineSerialPlc = (() => {
       function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
         if (!Array.isArray(memory.resting)) memory.resting = [];
         const resting = memory.resting;
-        const remembered = ids.indexOf(memory.last ?? -1);
-        let next = remembered >= 0 ? (remembered + 1) % ids.length : Math.abs(Math.trunc(start)) % ids.length || 0;
+        const first = Math.abs(Math.trunc(start)) % ids.length || 0;
+        const following = () => {
+          const remembered = ids.indexOf(memory.last ?? -1);
+          return remembered >= 0 ? (remembered + 1) % ids.length : first;
+        };
         const free = (id) => {
           const at = id === void 0 ? -1 : resting.indexOf(id);
           if (id === void 0) resting.length = 0;
@@ -387,11 +390,11 @@ var nxlineSerialPlc = (() => {
         return {
           /** @returns {number} the ID of the next query */
           take() {
+            let next = following();
             let tries = ids.length;
             while (tries-- > 0 && resting.includes(ids[next])) next = (next + 1) % ids.length;
             const oldest = resting.find((id2) => ids.includes(id2));
             const id = tries < 0 && oldest !== void 0 ? oldest : ids[next];
-            next = (ids.indexOf(id) + 1) % ids.length;
             memory.last = id;
             return id;
           },

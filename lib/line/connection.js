@@ -115,7 +115,12 @@ class Connection {
   /** @param {Buffer} bytes @param {(error?: any) => void} done */
   write(bytes, done) {
     if (!this.#open) return done(new PlcError('LINE_DOWN', { line: this.#name, reason: 'the port is not open' }))
-    this.#transport.write(bytes, done)
+    try {
+      this.#transport.write(bytes, done)
+    } catch (/** @type {any} */ cause) {
+      // a port that fails in the call must not end the process, which may hold other lines
+      done(new PlcError('PORT_ERROR', { path: this.#name, reason: cause?.message ?? String(cause), cause }))
+    }
   }
 
   hint(count, at) {

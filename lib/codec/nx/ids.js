@@ -55,8 +55,12 @@ const bad = (id, reason) => new PlcError('BAD_MASTER_ID', { id: String(id), reas
 function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
   if (!Array.isArray(memory.resting)) memory.resting = []
   const resting = memory.resting
-  const remembered = ids.indexOf(memory.last ?? -1)
-  let next = remembered >= 0 ? (remembered + 1) % ids.length : Math.abs(Math.trunc(start)) % ids.length || 0
+  const first = Math.abs(Math.trunc(start)) % ids.length || 0
+  // from the memory each time: two who share it never use one ID twice in a row
+  const following = () => {
+    const remembered = ids.indexOf(memory.last ?? -1)
+    return remembered >= 0 ? (remembered + 1) % ids.length : first
+  }
   const free = id => {
     const at = id === undefined ? -1 : resting.indexOf(id)
     if (id === undefined) resting.length = 0
@@ -65,11 +69,11 @@ function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
   return {
     /** @returns {number} the ID of the next query */
     take() {
+      let next = following()
       let tries = ids.length
       while (tries-- > 0 && resting.includes(ids[next])) next = (next + 1) % ids.length
       const oldest = resting.find(id => ids.includes(id))
       const id = tries < 0 && oldest !== undefined ? oldest : ids[next]
-      next = (ids.indexOf(id) + 1) % ids.length
       memory.last = id
       return id
     },

@@ -1,6 +1,16 @@
 'use strict'
 const { createDevice, deviceSettings } = require('./device-settings')
 
+/** What the line or the device advises, once for each kind: it stands in the log and in the debug sidebar. */
+const adviser = plc => {
+  const told = new Set()
+  return ({ event, station, cause, remedy }) => {
+    if ((station !== null && station !== plc.station) || told.has(event)) return
+    told.add(event)
+    plc.warn([cause, remedy].filter(Boolean).join('. '))
+  }
+}
+
 /**
  * @param {any} plc the config node
  * @param {Map<any, (line: { state: string, reason: any }) => void>} users who is told of the line
@@ -13,6 +23,7 @@ const openDevice = (plc, users) => {
     if (tagFault && !plc.tagFault) plc.error(tagFault)
     plc.tagFault = tagFault
     lease.on('state', (state, reason) => users.forEach(tell => tell({ state, reason })))
+    lease.on('event', adviser(plc))
     return { lease, device }
   } catch (error) {
     lease.release()

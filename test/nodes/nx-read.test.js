@@ -236,6 +236,28 @@ describe('nx-read', () => {
     ])
   })
 
+  it('late answers: the advice is given once, to the PLC that it concerns', async () => {
+    const quick = { timeout: '30' }
+    await load([
+      lineNode(wire, { latenessBound: '60' }),
+      plcNode(quick),
+      plcNode({ id: 'plc2', name: 'Press', station: 2, ...quick }),
+      reader({ items: ['M0'], interval: '20' }),
+      reader({ id: 'read2', plc: 'plc2', items: ['M0'], interval: '20' })
+    ])
+    const warnings = { plc: [], plc2: [] }
+    for (const id of Object.keys(warnings)) {
+      helper.getNode(id).on('call:warn', call => warnings[id].push(call.args[0]))
+    }
+    wire.faults.set('late', 1, 40)
+    await until(() => warnings.plc.length > 0 && warnings.plc2.length > 0, 'the advice')
+    const told = () => helper.log().args.filter(([{ msg }]) => /raise the timeout/.test(msg)).length
+    await until(() => wire.faults.counts.late > 8, 'more late answers')
+    assert.match(warnings.plc[0], /Station 1 answers \d+ ms after its 30 ms timeout: raise the timeout/)
+    assert.match(warnings.plc2[0], /Station 2 answers/)
+    assert.equal(told(), 2)
+  })
+
   it('a simulated line marks its messages and its status', async () => {
     const line = { id: 'line', type: 'plc-line', transport: 'simulated' }
     const { out } = await load([line, plcNode({ name: '' }), reader({ items: ['M0', 'W10:float32'], interval: '20' })])

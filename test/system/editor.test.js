@@ -6,7 +6,7 @@ const assert = require('node:assert/strict')
 const fs = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
-const { startNodeRed } = require('../support/node-red.js')
+const { startNodeRed, until } = require('../support/node-red.js')
 const manifest = require('../../package.json')
 const { packedProduct, RUNTIMES, startBrowser } = require('./support.js')
 
@@ -96,11 +96,11 @@ for (const { name, red, node } of RUNTIMES) {
       await openDialog('nx-write', 'setpoint, verified')
       await picture('nx-write')
       assert.equal(await page.locator('#node-input-target').inputValue(), 'setpoint')
-      await page.locator('#node-input-lookup-plc').click()
+      await page.locator('#node-input-btn-plc-edit').click()
       await page.locator('#node-config-input-station').waitFor()
       await page.locator('#node-config-input-timeout').waitFor()
       await picture('nx-config')
-      await page.locator('#node-config-input-lookup-line, #node-input-lookup-line').first().click()
+      await page.locator('#node-config-input-btn-line-edit').click()
       await page.locator('#node-config-input-transport').waitFor()
       await picture('plc-line')
       assert.equal(await page.locator('#node-config-input-transport').inputValue(), 'simulated')
@@ -130,15 +130,19 @@ for (const { name, red, node } of RUNTIMES) {
 
     it('Test in the dialog of the PLC says that it answers', async () => {
       await openDialog('nx-write', 'setpoint, verified')
-      await page.locator('#node-input-lookup-plc').click()
+      await page.locator('#node-input-btn-plc-edit').click()
       await page.locator('#nxline-nx-test').click()
       const result = page.locator('#nxline-nx-test-result')
       await result.waitFor()
       await page.waitForFunction(() => /answer/i.test(document.querySelector('#nxline-nx-test-result').textContent))
       await picture('test')
       for (const tab of ['tags', 'writing', 'details']) {
-        await page.locator(`#nxline-nx-tabs a[href="#nxline-nx-${tab}"]`).click()
-        await page.locator(`#nxline-nx-${tab}`).waitFor()
+        // two clicks in a row count as a double click, which opens no tab
+        const open = async () => {
+          await page.locator(`#nxline-nx-tabs a[href="#nxline-nx-${tab}"]`).click()
+          return page.locator(`#nxline-nx-${tab}`).isVisible()
+        }
+        await until(open, { what: `the tab ${tab}`, every: 400 })
         await picture(`nx-config ${tab}`)
       }
       await page.locator('#node-config-dialog-cancel').click()

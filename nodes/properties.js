@@ -39,7 +39,7 @@ const PROPERTIES = {
   'nx-config': {
     name: text(),
     line: node(),
-    station: number('', 0, 255, { except: [192, 254], says: '0 to 191, or 255', needed: true }),
+    station: number('', 0, 255, { except: [192, 254], says: '0 to 191, or 255', needed: true, isStation: true }),
     steps: choice('2', '2', '4'),
     timeout: number(3000, 10, 600000),
     attempts: number(3, 1, 20),

@@ -15,6 +15,11 @@ const REASONS = {
 
 const shown = value => (value === undefined || value === null || value === '' ? 'empty' : value)
 
+const refusal = ({ isStation }, name, { value, reason }) =>
+  isStation
+    ? new PlcError('BAD_STATION', { station: value, reason })
+    : new PlcError('BAD_SETTING', { setting: name, value, reason })
+
 const readOne = (type, name, config) => {
   const row = PROPERTIES[type][name]
   const { value, problem, variable } = readProperty(row, config[name])
@@ -23,8 +28,7 @@ const readOne = (type, name, config) => {
   if (problem === 'missing' && row.kind === 'node') {
     throw new PlcError('NO_CONFIGURATION', { node: config.name || type, what: name })
   }
-  if (problem)
-    throw new PlcError('BAD_SETTING', { setting: name, value: shown(config[name]), reason: REASONS[problem](row) })
+  if (problem) throw refusal(row, name, { value: shown(config[name]), reason: REASONS[problem](row) })
   return value
 }
 

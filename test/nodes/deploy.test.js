@@ -120,8 +120,8 @@ describe('deploys and configurations', () => {
     ['no line', () => [plcNode()], 'NO_CONFIGURATION'],
     ['a line without a path', () => [{ id: 'line', type: 'plc-line' }, plcNode()], 'BAD_SETTING'],
     ['a speed that is no number', w => [lineNode(w, { baudRate: 'fast' }), plcNode()], 'BAD_SETTING'],
-    ['a station of masters', w => [lineNode(w), plcNode({ station: '192' })], 'BAD_SETTING'],
-    ['no station', w => [lineNode(w), plcNode({ station: '' })], 'BAD_SETTING'],
+    ['a station of masters', w => [lineNode(w), plcNode({ station: '192' })], 'BAD_STATION'],
+    ['no station', w => [lineNode(w), plcNode({ station: '' })], 'BAD_STATION'],
     ['a bad area row', w => [lineNode(w), plcNode({ areas: [{ area: 'M', base: 'x' }] })], 'BAD_AREA'],
     ['a bad writable range', w => [lineNode(w), plcNode({ writableRanges: 'Q1' })], 'UNKNOWN_AREA']
   ]) {

@@ -2,6 +2,9 @@
 
 const { EMPTY } = require('./receiver')
 
+/** Whoever looks at the end of a silence this late (ms) may come from a blocked process, whose input has not been read yet. */
+const LAG = 2
+const BREATH = 10
 const LEAST_BOUND = 1000
 const MARGIN = 1.5
 const MOST_WATCHERS = 32
@@ -39,7 +42,7 @@ class Quarantine {
   memory(station) {
     let memory = this.#memories.get(station)
     if (!memory) {
-      memory = { asked: false, base: LEAST_BOUND, lateness: 0, bound: LEAST_BOUND, until: 0 }
+      memory = { asked: false, base: LEAST_BOUND, lateness: 0, bound: LEAST_BOUND, until: 0, heard: 0 }
       this.#memories.set(station, memory)
     }
     return memory
@@ -57,9 +60,19 @@ class Quarantine {
     memory.bound = Math.max(memory.base, memory.lateness * MARGIN)
   }
 
-  /** When the station may be asked, ms of the clock. */
+  /**
+   * When the station may be asked, ms of the clock. A silence counts only once it has been listened to: where its end is seen late, the
+   * bytes that came meanwhile get a moment to be read.
+   */
   readyAt(station) {
-    return this.#memories.get(station)?.until ?? 0
+    const memory = this.#memories.get(station)
+    if (!memory) return 0
+    const now = this.#clock.now()
+    if (memory.heard !== memory.until && now >= memory.until) {
+      if (now > memory.until + LAG) memory.until = now + BREATH
+      memory.heard = memory.until
+    }
+    return memory.until
   }
 
   /**

@@ -52,7 +52,11 @@ class NxConnection {
     return this.#lease.line
   }
 
-  /** As `NxPlc.read`; one text is an array of one. @param {string|string[]} items @param {any} [options] */
+  /**
+   * As `NxPlc.read`; one text is an array of one.
+   * @param {string|string[]} items
+   * @param {{ priority?: number }} [options]
+   */
   read(items, options) {
     return this.plc.read(typeof items === 'string' ? [items] : items, options)
   }
@@ -60,14 +64,18 @@ class NxConnection {
   /**
    * As `NxPlc.write`, of fixed targets.
    * @param {Record<string, any> | { item: string, value: any }[]} values `{ K0: 5, 'K127.12': true }`, or entries
-   * @param {any} [options]
+   * @param {{ fixed?: boolean, verify?: boolean, coalesce?: boolean }} [options]
    */
   write(values, options) {
     const entries = Array.isArray(values) ? values : Object.entries(values).map(([item, value]) => ({ item, value }))
     return this.plc.write(entries, { fixed: true, ...options })
   }
 
-  /** As `NxPlc.subscribe`. @param {any} group @param {any} callback */
+  /**
+   * As `NxPlc.subscribe`.
+   * @param {{ items: string[], interval: number, immediately?: boolean }} group interval in ms, 10 to a day
+   * @param {(results: import('./points').Result[], cycle: import('./subscription').Cycle) => void} callback per cycle
+   */
   subscribe(group, callback) {
     return this.plc.subscribe(group, callback)
   }

@@ -194,8 +194,9 @@ class Writer {
     const last = lastWritten(points, fates)
     if (last.length === 0) return
     const readings = await this.#readBack(last.map(index => points[index]))
+    const { station } = this.#settings
     last.forEach((index, at) => {
-      fates[index] = judge(fates[index], points[index], readings[at])
+      fates[index] = judge(fates[index], { ...points[index], station }, readings[at])
     })
   }
 
@@ -231,10 +232,11 @@ const lastWritten = (points, fates) => {
   return last
 }
 
-const judge = (fate, { values, text }, reading) => {
+const judge = (fate, { values, text, station }, reading) => {
   if ('error' in reading) {
     const reason = `it could not be read back: ${reading.error.code}`
-    return { outcome: 'unknown', error: new PlcError('WRITE_UNKNOWN', { item: text, reason, cause: reading.error }) }
+    const details = { station, item: text, reason, cause: reading.error }
+    return { outcome: 'unknown', error: new PlcError('WRITE_UNKNOWN', details) }
   }
   if (values.every((value, index) => value === reading.raw[index])) return { outcome: 'confirmed' }
   const shown = raw =>

@@ -167,6 +167,7 @@ describe('NX PLC: writing', () => {
     b.faults.once('silent', { times: 10 })
     const outcome = await write([entry('K0', 5)], { verify: true })
     assert.deepEqual([outcome.outcome, outcome.code], ['unknown', 'WRITE_UNKNOWN'])
+    assert.match(outcome.text, /station 1 .*K0: it could not be read back/)
     assert.equal(b.station.writes.get('word:320'), 1)
   })
 

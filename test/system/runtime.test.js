@@ -102,9 +102,9 @@ for (const { name, red, node, red_, node_ } of RUNTIMES) {
       }
     })
 
-    it(`${ROUNDS} redeploys and reconnects leave no port, timer, listener or descriptor behind`, async () => {
-      // a thousand on one, a tenth on the other: the code is the same, the runtime's part differs
-      const rounds = red_.test('4.1.0') ? ROUNDS : Math.ceil(ROUNDS / 10)
+    // a thousand on one, a tenth on the other: the code is the same, the runtime's part differs
+    const rounds = red_.test('4.1.0') ? ROUNDS : Math.ceil(ROUNDS / 10)
+    it(`${rounds} redeploys and reconnects leave no port, timer, listener or descriptor behind`, async () => {
       const done = await redeploys({ rounds, red, node, product })
       assert.equal(done.rounds, rounds)
       assert.ok(done.connections > rounds / 4, `only ${done.connections} connections`)

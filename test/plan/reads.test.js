@@ -4,16 +4,8 @@ const assert = require('node:assert/strict')
 const fc = require('fast-check')
 const { check } = require('../../lib/codec/nx/limits')
 const { planReads } = require('../../lib/plan')
+const { LIMITS } = require('./support')
 
-const LIMITS = {
-  readBits: 255,
-  readWords: 128,
-  readMixed: 128,
-  writeBits: 254,
-  writeWords: 64,
-  writeMixed: 85,
-  info: 256
-}
 const word = (address, count = 1) => ({ kind: 'word', address, count })
 const bit = address => ({ kind: 'bit', address, count: 1 })
 const words = (from, count) => Array.from({ length: count }, (_, at) => word(from + at))

@@ -4,16 +4,8 @@ const assert = require('node:assert/strict')
 const fc = require('fast-check')
 const { check } = require('../../lib/codec/nx/limits')
 const { planWrites } = require('../../lib/plan')
+const { LIMITS } = require('./support')
 
-const LIMITS = {
-  readBits: 255,
-  readWords: 128,
-  readMixed: 128,
-  writeBits: 254,
-  writeWords: 64,
-  writeMixed: 85,
-  info: 256
-}
 const plan = (points, limits = {}) => planWrites(points, { ...LIMITS, ...limits })
 const word = (address, ...values) => ({ kind: 'word', address, values })
 const bit = (address, value = true) => ({ kind: 'bit', address, values: [value] })

@@ -1,5 +1,14 @@
-// A program in TypeScript, strict, that uses the package: test/types/types.test.js compiles it.
-import { CODES, PRIORITY, PlcError, createNxPlc, createPool, listPorts, messagesOf, openNxPlc } from '@nxline/node-red-serial-plc'
+// A program in TypeScript, strict, that uses the package: test/consumer/types.test.js compiles it.
+import {
+  CODES,
+  PRIORITY,
+  PlcError,
+  createNxPlc,
+  createPool,
+  listPorts,
+  messagesOf,
+  openNxPlc
+} from '@nxline/node-red-serial-plc'
 import { createNxLine, createVirtualClock, serveOnTcp } from '@nxline/node-red-serial-plc/sim'
 
 export async function connection(): Promise<'confirmed' | 'unknown' | 'refused' | 'failed'> {
@@ -9,7 +18,13 @@ export async function connection(): Promise<'confirmed' | 'unknown' | 'refused' 
   const outcome = await plc.write({ K0: 215, 'K127.12': true }, { verify: true })
   const results = await plc.read(['K0', 'M0..M3'], { priority: PRIORITY.POLL })
   for (const { name, value, quality, timestamp, code } of results) {
-    const row: [string, unknown, 'good' | 'uncertain' | 'bad', number, string | undefined] = [name, value, quality, timestamp, code]
+    const row: [string, unknown, 'good' | 'uncertain' | 'bad', number, string | undefined] = [
+      name,
+      value,
+      quality,
+      timestamp,
+      code
+    ]
     messagesOf(results, { format: 'envelope', device: row[0] })
   }
   const polling = plc.subscribe({ items: ['M0'], interval: 100 }, (values, { ms, failure }) => {

@@ -12,7 +12,7 @@ const lib = path.join(root, 'lib')
 describe('types', () => {
   it('a strict TypeScript program compiles, and what is wrong in it is found', function () {
     this.timeout(60000)
-    const program = ts.createProgram([path.join(__dirname, 'consumer.ts')], {
+    const program = ts.createProgram([path.join(__dirname, 'program.ts')], {
       strict: true,
       noEmit: true,
       allowJs: true,

@@ -5,7 +5,7 @@
  * compares it with the defaults of the .html files, and docs/nodes.md lists it. Pure: it imports nothing, so that the browser can have it too.
  */
 
-/** @typedef {{ kind: string, fallback: any, least?: number, most?: number, known?: string[], whole?: boolean, except?: [number, number], needed?: boolean, says?: string }} Row */
+/** @typedef {{ kind: string, fallback: any, least?: number, most?: number, known?: string[], whole?: boolean, except?: [number, number], needed?: boolean, says?: string, isStation?: boolean }} Row */
 
 const text = (fallback = '', more = {}) => ({ kind: 'text', fallback, ...more })
 const number = (fallback, least, most, more = {}) => ({ kind: 'number', fallback, least, most, whole: true, ...more })

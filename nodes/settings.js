@@ -15,6 +15,7 @@ const REASONS = {
 
 const shown = value => (value === undefined || value === null || value === '' ? 'empty' : value)
 
+/** @param {import('./properties').Row} row @param {string} name @param {{ value: any, reason: string }} what */
 const refusal = ({ isStation }, name, { value, reason }) =>
   isStation
     ? new PlcError('BAD_STATION', { station: value, reason })

@@ -1496,13 +1496,20 @@ var nxlineSerialPlc = (() => {
         }
       };
       var notationOf = (areas) => nxNotation({ areas: areas || [] });
-      var notationWithTags = (plc) => {
-        const { areas, tags } = plc || {};
-        return attempt(
-          () => nxNotation({ areas: areas || [], tags: tags || [] }),
-          attempt(() => notationOf(areas), notationOf([]))
-        );
+      var usableTags = (areas, tags) => {
+        const names = /* @__PURE__ */ new Set();
+        return tags.filter((row) => {
+          const [name] = attempt(() => [...nxNotation({ areas, tags: [row] }).tags.keys()], []);
+          return name !== void 0 && !names.has(name) && names.add(name);
+        });
       };
+      var notationWithTags = (plc) => {
+        const { areas: rows, tags } = plc || {};
+        const areas = attempt(() => notationOf(rows) && rows, []) || [];
+        return attempt(() => nxNotation({ areas, tags: tags || [] }), null) || nxNotation({ areas, tags: usableTags(areas, Array.isArray(tags) ? tags : []) });
+      };
+      var plcLabel = (plc) => t("editor.station", { station: plc.station === "" ? "?" : plc.station });
+      var plcName = (plc) => plc.name || plcLabel(plc);
       var hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, "0");
       var unitOf = (item, bits) => {
         const number = item.kind === "word" ? item.count * item.type.words : item.count;
@@ -1518,7 +1525,7 @@ var nxlineSerialPlc = (() => {
         return t("editor.goesOut", { code, address, what: unitOf(item, bits) });
       };
       var unsure = (item, notation) => attempt(() => notation.parse(item.addressText).certainty === "unconfirmed", false);
-      module.exports = { notationOf, notationWithTags, describe, unsure, parseItem, attempt, hex };
+      module.exports = { notationOf, notationWithTags, plcLabel, plcName, describe, unsure, parseItem, attempt, hex };
     }
   });
 
@@ -1530,7 +1537,7 @@ var nxlineSerialPlc = (() => {
       var { t, errorText } = require_texts();
       var { readSettings } = require_settings();
       var { readTags } = require_tags();
-      var { notationOf, notationWithTags, parseItem } = require_model();
+      var { notationOf, notationWithTags, parseItem, plcName } = require_model();
       var edited = { id: null, prefix: "node-input-" };
       var open = (node, prefix) => Object.assign(edited, { id: node.id, prefix });
       var done = () => {
@@ -1557,7 +1564,7 @@ var nxlineSerialPlc = (() => {
         "nx-config": {
           station(node, value) {
             const twin = sameStation(node, value);
-            return twin ? t("problem.sameStation", { other: twin.name || twin.id }) : true;
+            return twin ? t("problem.sameStation", { other: plcName(twin) }) : true;
           },
           masterIds: (_node, value) => Boolean(readSettings({ station: 255, masterIds: value }, 1)),
           writableRanges(node, writableRanges) {
@@ -1585,7 +1592,7 @@ var nxlineSerialPlc = (() => {
             const plc = RED.nodes.node(current(node, "plc"));
             if (!plc) return true;
             parseItem(value, notationWithTags(plc));
-            return plc.access === "write" ? true : t("problem.readOnly", { plc: plc.name || plc.id });
+            return plc.access === "write" ? true : t("problem.readOnly", { plc: plcName(plc) });
           }
         }
       };
@@ -1649,21 +1656,27 @@ var nxlineSerialPlc = (() => {
           }
         }
       };
-      var suggest = (field, offers) => field.autoComplete({
-        minLength: 0,
-        search(value, answer) {
-          const wanted = value.trim().toLowerCase();
-          const found = offers().filter((offer) => `${offer.value} ${offer.hint || ""}`.toLowerCase().includes(wanted));
-          answer(
-            found.slice(0, 50).map((offer) => ({
-              value: offer.value,
-              label: $("<span>").text(offer.value).append(
-                $("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(offer.hint || "")
-              )
-            }))
-          );
-        }
+      var offerRow = ({ value, hint = "" }) => ({
+        value,
+        label: $("<span>").text(value).append($("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(hint))
       });
+      var offersFor = (text, offers, usable) => {
+        const wanted = text.trim().toLowerCase();
+        const found = offers.filter(({ value, hint = "" }) => `${value} ${hint}`.toLowerCase().includes(wanted)).slice(0, 50);
+        if (wanted === "" || found.length === 0 || !usable(text.trim())) return found;
+        const others = found.filter(({ value }) => value !== text.trim());
+        return others.length === 0 ? [] : [{ value: text.trim() }, ...others];
+      };
+      var suggest = (field, offers, usable) => {
+        field.autoComplete({
+          minLength: 0,
+          search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
+        });
+        field.on("click", () => field.val() === "" && field.trigger("keyup"));
+        field.on("keydown", ({ key }) => {
+          if (key === "Tab" || key === "Enter") setTimeout(() => field.trigger("change"), 0);
+        });
+      };
       var copyable = (text) => $('<a href="#" class="nxline-copy">').css({ fontFamily: "var(--red-ui-monospace-font)", whiteSpace: "nowrap" }).attr("title", t("editor.copy")).text(text).prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>').on("click", function(event) {
         event.preventDefault();
         RED.clipboard.copyText(text, $(this));
@@ -1675,21 +1688,22 @@ var nxlineSerialPlc = (() => {
         color: "var(--red-ui-secondary-text-color)"
       });
       var say = (block, text, bad = false) => block.empty().text(text).css("color", bad ? "var(--red-ui-text-color-error)" : "var(--red-ui-secondary-text-color)");
-      var cell = (name, value, { width = "80px", grow = false } = {}) => $('<input type="text">').addClass(`nxline-${name}`).attr({ placeholder: t(`column.${name}`), title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 }).val(value === void 0 || value === null ? "" : String(value));
+      var cell = (name, value, { width = "80px", grow = false, shows = t(`column.${name}`) } = {}) => $('<input type="text">').addClass(`nxline-${name}`).attr({ placeholder: shows, title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 }).val(value === void 0 || value === null ? "" : String(value));
       var pick = (name, value, options) => {
         const field = $("<select>").addClass(`nxline-${name}`).attr({ title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width: "auto", margin: 0 });
         options.forEach(([key, label]) => field.append($("<option>").attr("value", key).text(label)));
         keepUnknown(field, value);
         return field;
       };
+      var truthy = (value) => Boolean(value) && value !== "false";
       var tick = (name, value) => {
-        const box = $('<input type="checkbox">').addClass(`nxline-${name}`).css({ width: "auto", margin: "0 4px 0 0" }).prop("checked", Boolean(value) && value !== "false");
+        const box = $('<input type="checkbox">').addClass(`nxline-${name}`).css({ width: "auto", margin: "0 4px 0 0" }).prop("checked", truthy(value));
         const label = $("<label>").css({ width: "auto", margin: 0, display: "inline-flex", alignItems: "center", whiteSpace: "nowrap" }).attr("title", t(`tooltip.${name}`)).append(box).append(document.createTextNode(t(`column.${name}`)));
         return { box, label };
       };
       var mark = (text) => $("<span>").css({ color: "var(--red-ui-secondary-text-color)", whiteSpace: "nowrap", fontSize: "12px" }).text(text);
       var flex = (...children) => $("<div>").css({ display: "flex", gap: "4px", alignItems: "center", marginBottom: "3px" }).append(children);
-      module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex, mark };
+      module.exports = { tabs, fillDefaults, suggest, offersFor, copyable, note, say, cell, pick, tick, truthy, flex, mark };
     }
   });
 
@@ -1740,8 +1754,16 @@ var nxlineSerialPlc = (() => {
           ports = found;
           return found;
         });
-        suggest($(`#${PREFIX}path`), () => ports.map((port) => ({ value: port.path, hint: port.label })));
-        suggest($(`#${PREFIX}baudRate`), () => SPEEDS.map((value) => ({ value })));
+        suggest(
+          $(`#${PREFIX}path`),
+          () => ports.map((port) => ({ value: port.path, hint: port.label })),
+          () => true
+        );
+        suggest(
+          $(`#${PREFIX}baudRate`),
+          () => SPEEDS.map((value) => ({ value })),
+          () => true
+        );
         const button = $("#nxline-line-ports").attr("title", t("editor.listPorts"));
         button.on("click", () => refresh().then((found) => showMenu(button, found)));
         refresh();
@@ -1826,12 +1848,25 @@ var nxlineSerialPlc = (() => {
       var { tagsFromCsv, tagsToCsv } = require_csv();
       var { parseExpression } = require_item();
       var { readTags } = require_tags();
-      var { describe, hex, notationOf, unsure } = require_model();
-      var { cell, flex, mark, note, pick, say, tick } = require_widgets();
+      var { attempt, describe, hex, notationOf, unsure } = require_model();
+      var { cell, flex, mark, note, pick, say, tick, truthy } = require_widgets();
       var { errorText, reasonOf, t } = require_texts();
       var TYPES = ["", "bool", "uint16", "int16", "uint32", "int32", "float32", "bcd16", "bcd32", "string[8]"];
       var rowsOf = (list) => list.editableList("items").toArray().map((row) => row.data("nxline").read());
-      var clean = (row) => Object.fromEntries(Object.entries(row).filter(([, value]) => value !== "" && value !== void 0 && value !== false));
+      var kept = (saved, name, value) => {
+        const before = saved[name];
+        const same = typeof value === "boolean" ? value === truthy(before) : value === String(before ?? "").trim();
+        return same ? before : value;
+      };
+      var EMPTY = ["", false];
+      var merged = (saved, cells) => {
+        const row = { ...saved };
+        for (const [name, value] of Object.entries(cells)) {
+          row[name] = kept(saved, name, value);
+          if (row[name] === void 0 || EMPTY.includes(row[name]) && row[name] !== saved[name]) delete row[name];
+        }
+        return row;
+      };
       var tagText = (row, { steps, areas }) => {
         const notation = notationOf(areas);
         const tag = [...readTags([row], notation).values()][0];
@@ -1861,21 +1896,21 @@ var nxlineSerialPlc = (() => {
           address: cell("address", data.address, { width: "22%" }),
           type: typeField(data.type),
           label: cell("tagLabel", data.label, { grow: true, width: "20%" }),
-          unit: cell("unit", data.unit, { width: "52px" }),
-          scale: cell("scale", data.scale, { width: "58px" }),
-          offset: cell("offset", data.offset, { width: "58px" }),
-          deadband: cell("deadband", data.deadband, { width: "52px" }),
+          unit: cell("unit", data.unit, { width: "64px" }),
+          scale: cell("scale", data.scale, { width: "58px", shows: "1" }),
+          offset: cell("offset", data.offset, { width: "58px", shows: "0" }),
+          deadband: cell("deadband", data.deadband, { width: "52px", shows: "0" }),
           wordOrder: pick("wordOrder", data.wordOrder === "low" ? "" : data.wordOrder, order),
-          min: cell("min", data.min, { width: "52px" }),
-          max: cell("max", data.max, { width: "52px" }),
+          min: cell("min", data.min, { width: "52px", shows: "–" }),
+          max: cell("max", data.max, { width: "52px", shows: "–" }),
           writable
         };
       };
-      var readFields = (fields, kept) => {
-        const value = (name) => String(fields[name].val() ?? "").trim();
-        const row = { ...kept, writable: fields.writable.box.prop("checked") };
-        for (const name of Object.keys(fields)) if (name !== "writable") row[name] = value(name);
-        return clean(row);
+      var readFields = (fields, saved) => {
+        const content = (field) => field.box ? field.box.prop("checked") : String(field.val() ?? "").trim();
+        const cells = Object.fromEntries(Object.entries(fields).map(([name, field]) => [name, content(field)]));
+        if (cells.wordOrder === "" && saved.wordOrder === "low") cells.wordOrder = "low";
+        return merged(saved, cells);
       };
       var addTag = (container, data, context) => {
         const fields = tagFields(data);
@@ -1909,7 +1944,7 @@ var nxlineSerialPlc = (() => {
         readTags(rows, notationOf(areas));
         const names = new Set(rows.map((row) => row.name.trim()));
         list.editableList("items").toArray().filter((row) => names.has(row.data("nxline").read().name)).forEach((row) => list.editableList("removeItem", row.data("data")));
-        rows.forEach((row) => list.editableList("addItem", clean(row)));
+        rows.forEach((row) => list.editableList("addItem", merged({}, row)));
         return rows.length;
       };
       var download = (name, text) => {
@@ -1924,7 +1959,8 @@ var nxlineSerialPlc = (() => {
         area: cell("area", data.area, { width: "60px" }),
         base: cell("base", data.base, { width: "80px" }),
         words: cell("words", data.words, { width: "70px" }),
-        as: pick("as", data.as || "both", [
+        as: pick("as", data.as || "", [
+          ["", t("editor.asBefore")],
           ["both", t("editor.asBoth")],
           ["bits", t("editor.asBits")],
           ["words", t("editor.asWords")]
@@ -1933,54 +1969,67 @@ var nxlineSerialPlc = (() => {
         confirmed: tick("confirmed", data.confirmed),
         remove: tick("remove", data.remove)
       });
-      var readArea = (fields) => {
-        const value = (name) => String(fields[name].val() ?? "").trim();
-        const area = value("area").toUpperCase();
-        if (fields.remove.box.prop("checked")) return { area, remove: true };
-        const row = { area, base: value("base"), words: value("words"), as: value("as"), note: value("note") };
-        return clean({ ...row, confirmed: fields.confirmed.box.prop("checked") });
+      var readArea = (fields, saved) => {
+        const row = readFields(fields, saved);
+        if (row.area) row.area = String(row.area).toUpperCase();
+        return row.remove ? { area: row.area, remove: row.remove } : row;
       };
-      var judgeArea = (row, block) => {
-        if (!row.area) return say(block, t("editor.areaHint"));
+      var areaFault = (row, rows) => {
         try {
-          const known = areaMap([row]).get(row.area);
-          if (!known) return say(block, t("editor.areaRemoved"));
-          const range = `${hex(known.base, 4)}h..${hex(known.base + known.words - 1, 4)}h`;
-          return say(block, t(known.writable ? "editor.areaWritable" : "editor.areaReadable", { range }));
+          areaMap(rows);
+          return null;
         } catch (error) {
-          return say(block, errorText(error), true);
+          const { name, reason } = error.details;
+          return name === row.area || String(reason).includes(`${row.area} (`) ? error : null;
         }
       };
-      var addArea = (container, data, changed) => {
+      var areaText = (row, rows) => {
+        const map = attempt(() => areaMap(rows), null) || attempt(() => areaMap([row]), null);
+        if (!map) return "";
+        const known = map.get(row.area);
+        if (!known) return t("editor.areaRemoved");
+        const range = `${hex(known.base, 4)}h..${hex(known.base + known.words - 1, 4)}h`;
+        return t(known.writable ? "editor.areaWritable" : "editor.areaReadable", { range });
+      };
+      var judgeArea = (row, { block, rows }) => {
+        if (!row.area) return say(block, t("editor.areaHint"));
+        const fault = areaFault(row, rows);
+        return fault ? say(block, errorText(fault), true) : say(block, areaText(row, rows));
+      };
+      var addArea = (container, data, judgeAll) => {
         const fields = areaFields(data);
-        const message = note();
-        const read = () => readArea(fields);
-        const judge = () => {
+        const block = note();
+        const read = () => readArea(fields, data);
+        const judge = (rows) => {
           const standard = areaMap().get(read().area);
-          if (standard) {
-            fields.base.attr("placeholder", `0x${hex(standard.base, 4)}`);
-            fields.words.attr("placeholder", standard.words);
-          }
-          judgeArea(read(), message);
-          changed();
+          fields.base.attr("placeholder", standard ? `0x${hex(standard.base, 4)}` : t("column.base"));
+          fields.words.attr("placeholder", standard ? standard.words : t("column.words"));
+          judgeArea(read(), { block, rows });
         };
         container.append(
           flex(fields.area, fields.base, fields.words, fields.as, fields.note, fields.confirmed.label, fields.remove.label)
-        ).append(message).on("input change", judge);
+        ).append(block).on("input change", judgeAll);
         container.data("nxline", { read, judge });
-        judge();
       };
       var areaTable = (list, areas, changed) => {
+        const judgeAll = () => {
+          const rows = rowsOf(list).filter((row) => row.area);
+          list.editableList("items").toArray().forEach((row) => row.data("nxline").judge(rows));
+          changed();
+        };
         list.editableList({
-          addItem: (container, _index, data) => addArea(container, data, changed),
-          removeItem: changed,
+          addItem: (container, _index, data) => {
+            addArea(container, data, judgeAll);
+            setTimeout(judgeAll, 0);
+          },
+          removeItem: judgeAll,
           addButton: t("editor.addArea"),
           removable: true,
-          height: 150
+          height: 220
         });
         (areas || []).forEach((row) => list.editableList("addItem", row));
       };
-      module.exports = { tagTable, areaTable, rowsOf, importTags, exportTags };
+      module.exports = { tagTable, areaTable, areaFault, merged, rowsOf, importTags, exportTags };
     }
   });
 
@@ -1990,14 +2039,13 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { areaMap } = require_areas();
       var { done, open } = require_check();
-      var { attempt } = require_model();
+      var { attempt, plcLabel } = require_model();
       var { areaTable, exportTags, importTags, rowsOf, tagTable } = require_table();
       var { fillDefaults, tabs } = require_widgets();
       var { errorText, t } = require_texts();
       var dialogHeight = 0;
       var PREFIX = "node-config-input-";
       var value = (name) => $(`#${PREFIX}${name}`).val();
-      var plcLabel = (plc) => t("editor.station", { station: plc.station === "" ? "?" : plc.station });
       var areaRows = () => rowsOf($("#nxline-nx-area-list")).filter((row) => row.area);
       var tagRows = () => rowsOf($("#nxline-nx-tag-list")).filter((row) => row.name || row.address);
       var context = () => ({ steps: value("steps"), areas: attempt(areaRows, []) });
@@ -2108,7 +2156,7 @@ var nxlineSerialPlc = (() => {
     "scripts/editor/flow.js"(exports, module) {
       "use strict";
       var { done, isVariable, open } = require_check();
-      var { attempt, describe, notationWithTags, parseItem, unsure } = require_model();
+      var { attempt, describe, notationWithTags, parseItem, plcName, unsure } = require_model();
       var { copyable, fillDefaults, flex, note, say, suggest } = require_widgets();
       var { errorText, t } = require_texts();
       var PREFIX = "node-input-";
@@ -2118,6 +2166,7 @@ var nxlineSerialPlc = (() => {
         value: tag.name,
         hint: [tag.address, tag.label, tag.unit].filter(Boolean).join(" · ")
       }));
+      var isItem = (text) => attempt(() => Boolean(parseItem(text, notationWithTags(plcOf()))), false);
       var itemTexts = () => $("#nxline-read-items").editableList("items").toArray().map((row) => row.data("nxline").read()).filter((text) => text !== "");
       var judgeItem = (text, block) => {
         if (!text) return say(block, t("editor.itemHint"));
@@ -2139,7 +2188,7 @@ var nxlineSerialPlc = (() => {
         const read = () => String(field.val()).trim();
         const judge = () => judgeItem(read(), message);
         container.append(flex(field)).append(message);
-        suggest(field, tagOffers);
+        suggest(field, tagOffers, isItem);
         field.on("input change", () => {
           judge();
           showExample();
@@ -2179,7 +2228,7 @@ var nxlineSerialPlc = (() => {
         const block = $("#nxline-read-example");
         if (rows.length === 0 || !shape || value("itemsType") !== "list") return block.parent().hide();
         const plc = plcOf();
-        const text = JSON.stringify(shape(rows, plc && plc.name || "PLC"));
+        const text = JSON.stringify(shape(rows, plc ? plcName(plc) : "PLC"));
         block.text(items.length > 3 ? `${text} …` : text);
         return block.parent().show();
       };
@@ -2192,7 +2241,7 @@ var nxlineSerialPlc = (() => {
           addButton: t("editor.addItem"),
           removable: true,
           sortable: true,
-          height: 180
+          height: 240
         });
         (node.items || []).forEach((text) => list.editableList("addItem", { text }));
         if (!node.items || node.items.length === 0) list.editableList("addItem", { text: "" });
@@ -2211,7 +2260,7 @@ var nxlineSerialPlc = (() => {
       var resizeRead = (size) => {
         const others = $("#dialog-form > div:visible").not(".nxline-list").toArray();
         const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0);
-        $("#nxline-read-items").editableList("height", Math.max(190, size.height - used - 100));
+        $("#nxline-read-items").editableList("height", Math.max(240, size.height - used - 100));
       };
       var readLabel = (node) => {
         if (node.itemsType === "msg") return "msg.items";
@@ -2227,7 +2276,7 @@ var nxlineSerialPlc = (() => {
         const notation = notationWithTags(plc);
         try {
           const item = parseItem(text, notation);
-          if (plc && plc.access !== "write") return say(block, t("problem.readOnly", { plc: plc.name || plc.id }), true);
+          if (plc && plc.access !== "write") return say(block, t("problem.readOnly", { plc: plcName(plc) }), true);
           return say(block, describe(item, { ...plc, write: true }));
         } catch (error) {
           return say(block, errorText(error), true);
@@ -2236,7 +2285,7 @@ var nxlineSerialPlc = (() => {
       var editWrite = (node) => {
         open(node, PREFIX);
         fillDefaults(node, PREFIX);
-        suggest($(`#${PREFIX}target`), tagOffers);
+        suggest($(`#${PREFIX}target`), tagOffers, isItem);
         $(`#${PREFIX}target, #${PREFIX}plc`).on("input change", judgeTarget);
         $(`#${PREFIX}plc`).on("change", () => $(`#${PREFIX}target`).trigger("change"));
         $(`#${PREFIX}topic`).on("change", function() {

@@ -3,7 +3,7 @@ const { PROPERTIES, readProperty, allowed, applies } = require('../../nodes/prop
 const { t, errorText } = require('./texts')
 const { readSettings } = require('../../lib/device/settings')
 const { readTags } = require('../../lib/tag/tags')
-const { notationOf, notationWithTags, parseItem } = require('./model')
+const { notationOf, notationWithTags, parseItem, plcName } = require('./model')
 
 /** Validators of the dialogs: they answer true, or the reason as a text. */
 
@@ -42,7 +42,7 @@ const MORE = {
   'nx-config': {
     station(node, value) {
       const twin = sameStation(node, value)
-      return twin ? t('problem.sameStation', { other: twin.name || twin.id }) : true
+      return twin ? t('problem.sameStation', { other: plcName(twin) }) : true
     },
     masterIds: (_node, value) => Boolean(readSettings({ station: 255, masterIds: value }, 1)),
     writableRanges(node, writableRanges) {
@@ -70,7 +70,7 @@ const MORE = {
       const plc = RED.nodes.node(current(node, 'plc'))
       if (!plc) return true
       parseItem(value, notationWithTags(plc))
-      return plc.access === 'write' ? true : t('problem.readOnly', { plc: plc.name || plc.id })
+      return plc.access === 'write' ? true : t('problem.readOnly', { plc: plcName(plc) })
     }
   }
 }

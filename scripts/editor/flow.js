@@ -1,6 +1,6 @@
 'use strict'
 const { done, isVariable, open } = require('./check')
-const { attempt, describe, notationWithTags, parseItem, unsure } = require('./model')
+const { attempt, describe, notationWithTags, parseItem, plcName, unsure } = require('./model')
 const { copyable, fillDefaults, flex, note, say, suggest } = require('./widgets')
 const { errorText, t } = require('./texts')
 
@@ -15,6 +15,8 @@ const tagOffers = () =>
     value: tag.name,
     hint: [tag.address, tag.label, tag.unit].filter(Boolean).join(' · ')
   }))
+
+const isItem = text => attempt(() => Boolean(parseItem(text, notationWithTags(plcOf()))), false)
 
 // --- nx-read: the list of items
 
@@ -49,7 +51,7 @@ const addItem = (container, data) => {
   const read = () => String(field.val()).trim()
   const judge = () => judgeItem(read(), message)
   container.append(flex(field)).append(message)
-  suggest(field, tagOffers)
+  suggest(field, tagOffers, isItem)
   field.on('input change', () => {
     judge()
     showExample()
@@ -99,7 +101,7 @@ const showExample = () => {
   const block = $('#nxline-read-example')
   if (rows.length === 0 || !shape || value('itemsType') !== 'list') return block.parent().hide()
   const plc = plcOf()
-  const text = JSON.stringify(shape(rows, (plc && plc.name) || 'PLC'))
+  const text = JSON.stringify(shape(rows, plc ? plcName(plc) : 'PLC'))
   block.text(items.length > 3 ? `${text} …` : text)
   return block.parent().show()
 }
@@ -114,7 +116,7 @@ const editRead = node => {
     addButton: t('editor.addItem'),
     removable: true,
     sortable: true,
-    height: 180
+    height: 240
   })
   ;(node.items || []).forEach(text => list.editableList('addItem', { text }))
   if (!node.items || node.items.length === 0) list.editableList('addItem', { text: '' })
@@ -140,7 +142,7 @@ const saveRead = node => {
 const resizeRead = size => {
   const others = $('#dialog-form > div:visible').not('.nxline-list').toArray()
   const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0)
-  $('#nxline-read-items').editableList('height', Math.max(190, size.height - used - 100))
+  $('#nxline-read-items').editableList('height', Math.max(240, size.height - used - 100))
 }
 
 /** The label of a reader without a name. */
@@ -161,7 +163,7 @@ const judgeTarget = () => {
   const notation = notationWithTags(plc)
   try {
     const item = parseItem(text, notation)
-    if (plc && plc.access !== 'write') return say(block, t('problem.readOnly', { plc: plc.name || plc.id }), true)
+    if (plc && plc.access !== 'write') return say(block, t('problem.readOnly', { plc: plcName(plc) }), true)
     return say(block, describe(item, { ...plc, write: true }))
   } catch (error) {
     return say(block, errorText(error), true)
@@ -172,7 +174,7 @@ const judgeTarget = () => {
 const editWrite = node => {
   open(node, PREFIX)
   fillDefaults(node, PREFIX)
-  suggest($(`#${PREFIX}target`), tagOffers)
+  suggest($(`#${PREFIX}target`), tagOffers, isItem)
   $(`#${PREFIX}target, #${PREFIX}plc`).on('input change', judgeTarget)
   $(`#${PREFIX}plc`).on('change', () => $(`#${PREFIX}target`).trigger('change'))
   $(`#${PREFIX}topic`)

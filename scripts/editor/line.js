@@ -53,8 +53,16 @@ const editLine = node => {
       ports = found
       return found
     })
-  suggest($(`#${PREFIX}path`), () => ports.map(port => ({ value: port.path, hint: port.label })))
-  suggest($(`#${PREFIX}baudRate`), () => SPEEDS.map(value => ({ value })))
+  suggest(
+    $(`#${PREFIX}path`),
+    () => ports.map(port => ({ value: port.path, hint: port.label })),
+    () => true
+  )
+  suggest(
+    $(`#${PREFIX}baudRate`),
+    () => SPEEDS.map(value => ({ value })),
+    () => true
+  )
   const button = $('#nxline-line-ports').attr('title', t('editor.listPorts'))
   button.on('click', () => refresh().then(found => showMenu(button, found)))
   refresh()

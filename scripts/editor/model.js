@@ -17,14 +17,28 @@ const attempt = (make, otherwise) => {
 /** How addresses are written for a station with these area rows; without tags. Throws BAD_AREA. */
 const notationOf = areas => nxNotation({ areas: areas || [] })
 
-/** The notation with the tags of a PLC's configuration; a faulty table counts as empty, its own dialog says so. */
+/** Rows of a tag table that can be used, as the run time uses them: a faulty one does not take the others with it. */
+const usableTags = (areas, tags) => {
+  const names = new Set()
+  return tags.filter(row => {
+    const [name] = attempt(() => [...nxNotation({ areas, tags: [row] }).tags.keys()], [])
+    return name !== undefined && !names.has(name) && names.add(name)
+  })
+}
+
+/** The notation with the tags of a PLC's configuration; what is faulty is left out, its own dialog says so. */
 const notationWithTags = plc => {
-  const { areas, tags } = plc || {}
-  return attempt(
-    () => nxNotation({ areas: areas || [], tags: tags || [] }),
-    attempt(() => notationOf(areas), notationOf([]))
+  const { areas: rows, tags } = plc || {}
+  const areas = attempt(() => notationOf(rows) && rows, []) || []
+  return (
+    attempt(() => nxNotation({ areas, tags: tags || [] }), null) ||
+    nxNotation({ areas, tags: usableTags(areas, Array.isArray(tags) ? tags : []) })
   )
 }
+
+/** How a PLC is called that has no name, in messages as well. */
+const plcLabel = plc => t('editor.station', { station: plc.station === '' ? '?' : plc.station })
+const plcName = plc => plc.name || plcLabel(plc)
 
 const hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, '0')
 
@@ -51,4 +65,4 @@ const describe = (item, { steps = 2, write = false } = {}) => {
 /** The row of the area table that an item lies in is only a guess. */
 const unsure = (item, notation) => attempt(() => notation.parse(item.addressText).certainty === 'unconfirmed', false)
 
-module.exports = { notationOf, notationWithTags, describe, unsure, parseItem, attempt, hex }
+module.exports = { notationOf, notationWithTags, plcLabel, plcName, describe, unsure, parseItem, attempt, hex }

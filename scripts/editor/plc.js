@@ -1,7 +1,7 @@
 'use strict'
 const { areaMap } = require('../../lib/codec/nx/areas')
 const { done, open } = require('./check')
-const { attempt } = require('./model')
+const { attempt, plcLabel } = require('./model')
 const { areaTable, exportTags, importTags, rowsOf, tagTable } = require('./table')
 const { fillDefaults, tabs } = require('./widgets')
 const { errorText, t } = require('./texts')
@@ -12,9 +12,6 @@ let dialogHeight = 0
 
 const PREFIX = 'node-config-input-'
 const value = name => $(`#${PREFIX}${name}`).val()
-
-/** How a PLC is called that has no name. */
-const plcLabel = plc => t('editor.station', { station: plc.station === '' ? '?' : plc.station })
 
 const areaRows = () => rowsOf($('#nxline-nx-area-list')).filter(row => row.area)
 const tagRows = () => rowsOf($('#nxline-nx-tag-list')).filter(row => row.name || row.address)

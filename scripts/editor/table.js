@@ -3,8 +3,8 @@ const { areaMap } = require('../../lib/codec/nx/areas')
 const { tagsFromCsv, tagsToCsv } = require('../../lib/tag/csv')
 const { parseExpression } = require('../../lib/tag/item')
 const { readTags } = require('../../lib/tag/tags')
-const { describe, hex, notationOf, unsure } = require('./model')
-const { cell, flex, mark, note, pick, say, tick } = require('./widgets')
+const { attempt, describe, hex, notationOf, unsure } = require('./model')
+const { cell, flex, mark, note, pick, say, tick, truthy } = require('./widgets')
 const { errorText, reasonOf, t } = require('./texts')
 
 /** The tables of nx-config: tags and areas. A row of the list keeps `read()`, its present content. */
@@ -17,8 +17,24 @@ const rowsOf = list =>
     .toArray()
     .map(row => row.data('nxline').read())
 
-const clean = row =>
-  Object.fromEntries(Object.entries(row).filter(([, value]) => value !== '' && value !== undefined && value !== false))
+/** A cell that nobody touched stays what was saved: a number stays a number, and a table that was only looked at is no change of the flow. */
+const kept = (saved, name, value) => {
+  const before = saved[name]
+  const same = typeof value === 'boolean' ? value === truthy(before) : value === String(before ?? '').trim()
+  return same ? before : value
+}
+
+const EMPTY = ['', false]
+
+/** A saved row with the present contents of its cells; empty ones are left out. */
+const merged = (saved, cells) => {
+  const row = { ...saved }
+  for (const [name, value] of Object.entries(cells)) {
+    row[name] = kept(saved, name, value)
+    if (row[name] === undefined || (EMPTY.includes(row[name]) && row[name] !== saved[name])) delete row[name]
+  }
+  return row
+}
 
 const tagText = (row, { steps, areas }) => {
   const notation = notationOf(areas)
@@ -52,22 +68,23 @@ const tagFields = data => {
     address: cell('address', data.address, { width: '22%' }),
     type: typeField(data.type),
     label: cell('tagLabel', data.label, { grow: true, width: '20%' }),
-    unit: cell('unit', data.unit, { width: '52px' }),
-    scale: cell('scale', data.scale, { width: '58px' }),
-    offset: cell('offset', data.offset, { width: '58px' }),
-    deadband: cell('deadband', data.deadband, { width: '52px' }),
+    unit: cell('unit', data.unit, { width: '64px' }),
+    scale: cell('scale', data.scale, { width: '58px', shows: '1' }),
+    offset: cell('offset', data.offset, { width: '58px', shows: '0' }),
+    deadband: cell('deadband', data.deadband, { width: '52px', shows: '0' }),
     wordOrder: pick('wordOrder', data.wordOrder === 'low' ? '' : data.wordOrder, order),
-    min: cell('min', data.min, { width: '52px' }),
-    max: cell('max', data.max, { width: '52px' }),
+    min: cell('min', data.min, { width: '52px', shows: '–' }),
+    max: cell('max', data.max, { width: '52px', shows: '–' }),
     writable
   }
 }
 
-const readFields = (fields, kept) => {
-  const value = name => String(fields[name].val() ?? '').trim()
-  const row = { ...kept, writable: fields.writable.box.prop('checked') }
-  for (const name of Object.keys(fields)) if (name !== 'writable') row[name] = value(name)
-  return clean(row)
+const readFields = (fields, saved) => {
+  const content = field => (field.box ? field.box.prop('checked') : String(field.val() ?? '').trim())
+  const cells = Object.fromEntries(Object.entries(fields).map(([name, field]) => [name, content(field)]))
+  // low is what an empty choice means
+  if (cells.wordOrder === '' && saved.wordOrder === 'low') cells.wordOrder = 'low'
+  return merged(saved, cells)
 }
 
 const addTag = (container, data, context) => {
@@ -121,7 +138,7 @@ const importTags = (list, text, areas) => {
     .toArray()
     .filter(row => names.has(row.data('nxline').read().name))
     .forEach(row => list.editableList('removeItem', row.data('data')))
-  rows.forEach(row => list.editableList('addItem', clean(row)))
+  rows.forEach(row => list.editableList('addItem', merged({}, row)))
   return rows.length
 }
 
@@ -139,7 +156,8 @@ const areaFields = data => ({
   area: cell('area', data.area, { width: '60px' }),
   base: cell('base', data.base, { width: '80px' }),
   words: cell('words', data.words, { width: '70px' }),
-  as: pick('as', data.as || 'both', [
+  as: pick('as', data.as || '', [
+    ['', t('editor.asBefore')],
     ['both', t('editor.asBoth')],
     ['bits', t('editor.asBits')],
     ['words', t('editor.asWords')]
@@ -149,59 +167,78 @@ const areaFields = data => ({
   remove: tick('remove', data.remove)
 })
 
-const readArea = fields => {
-  const value = name => String(fields[name].val() ?? '').trim()
-  const area = value('area').toUpperCase()
-  if (fields.remove.box.prop('checked')) return { area, remove: true }
-  const row = { area, base: value('base'), words: value('words'), as: value('as'), note: value('note') }
-  return clean({ ...row, confirmed: fields.confirmed.box.prop('checked') })
+const readArea = (fields, saved) => {
+  const row = readFields(fields, saved)
+  if (row.area) row.area = String(row.area).toUpperCase()
+  return row.remove ? { area: row.area, remove: row.remove } : row
 }
 
-const judgeArea = (row, block) => {
-  if (!row.area) return say(block, t('editor.areaHint'))
+/** What is wrong with a row, beside the others: an overlap is said by both rows. */
+const areaFault = (row, rows) => {
   try {
-    const known = areaMap([row]).get(row.area)
-    if (!known) return say(block, t('editor.areaRemoved'))
-    const range = `${hex(known.base, 4)}h..${hex(known.base + known.words - 1, 4)}h`
-    return say(block, t(known.writable ? 'editor.areaWritable' : 'editor.areaReadable', { range }))
+    areaMap(rows)
+    return null
   } catch (error) {
-    return say(block, errorText(error), true)
+    const { name, reason } = error.details
+    return name === row.area || String(reason).includes(`${row.area} (`) ? error : null
   }
 }
 
-const addArea = (container, data, changed) => {
+const areaText = (row, rows) => {
+  const map = attempt(() => areaMap(rows), null) || attempt(() => areaMap([row]), null)
+  if (!map) return ''
+  const known = map.get(row.area)
+  if (!known) return t('editor.areaRemoved')
+  const range = `${hex(known.base, 4)}h..${hex(known.base + known.words - 1, 4)}h`
+  return t(known.writable ? 'editor.areaWritable' : 'editor.areaReadable', { range })
+}
+
+const judgeArea = (row, { block, rows }) => {
+  if (!row.area) return say(block, t('editor.areaHint'))
+  const fault = areaFault(row, rows)
+  return fault ? say(block, errorText(fault), true) : say(block, areaText(row, rows))
+}
+
+const addArea = (container, data, judgeAll) => {
   const fields = areaFields(data)
-  const message = note()
-  const read = () => readArea(fields)
-  const judge = () => {
+  const block = note()
+  const read = () => readArea(fields, data)
+  const judge = rows => {
     const standard = areaMap().get(read().area)
-    if (standard) {
-      fields.base.attr('placeholder', `0x${hex(standard.base, 4)}`)
-      fields.words.attr('placeholder', standard.words)
-    }
-    judgeArea(read(), message)
-    changed()
+    fields.base.attr('placeholder', standard ? `0x${hex(standard.base, 4)}` : t('column.base'))
+    fields.words.attr('placeholder', standard ? standard.words : t('column.words'))
+    judgeArea(read(), { block, rows })
   }
   container
     .append(
       flex(fields.area, fields.base, fields.words, fields.as, fields.note, fields.confirmed.label, fields.remove.label)
     )
-    .append(message)
-    .on('input change', judge)
+    .append(block)
+    .on('input change', judgeAll)
   container.data('nxline', { read, judge })
-  judge()
 }
 
 /** The area table: rows that replace, add or remove standard ones. */
 const areaTable = (list, areas, changed) => {
+  const judgeAll = () => {
+    const rows = rowsOf(list).filter(row => row.area)
+    list
+      .editableList('items')
+      .toArray()
+      .forEach(row => row.data('nxline').judge(rows))
+    changed()
+  }
   list.editableList({
-    addItem: (container, _index, data) => addArea(container, data, changed),
-    removeItem: changed,
+    addItem: (container, _index, data) => {
+      addArea(container, data, judgeAll)
+      setTimeout(judgeAll, 0)
+    },
+    removeItem: judgeAll,
     addButton: t('editor.addArea'),
     removable: true,
-    height: 150
+    height: 220
   })
   ;(areas || []).forEach(row => list.editableList('addItem', row))
 }
 
-module.exports = { tagTable, areaTable, rowsOf, importTags, exportTags }
+module.exports = { tagTable, areaTable, areaFault, merged, rowsOf, importTags, exportTags }

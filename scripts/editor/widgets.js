@@ -44,27 +44,43 @@ const fillDefaults = (node, prefix) => {
   }
 }
 
-/** Suggestions while typing, all of them on an empty field. */
-const suggest = (field, offers) =>
+const offerRow = ({ value, hint = '' }) => ({
+  value,
+  label: $('<span>')
+    .text(value)
+    .append($('<span>').css({ color: 'var(--red-ui-secondary-text-color)', marginLeft: '8px' }).text(hint))
+})
+
+/**
+ * What is offered for a text. Tab and Enter take the first offer: where the text means something by itself it comes first, so that leaving
+ * the field never turns M1 into a tag that has M10.
+ * @param {string} text as typed
+ * @param {{ value: string, hint?: string }[]} offers
+ * @param {(text: string) => boolean} usable whether a text can stand as it is
+ */
+const offersFor = (text, offers, usable) => {
+  const wanted = text.trim().toLowerCase()
+  const found = offers.filter(({ value, hint = '' }) => `${value} ${hint}`.toLowerCase().includes(wanted)).slice(0, 50)
+  if (wanted === '' || found.length === 0 || !usable(text.trim())) return found
+  const others = found.filter(({ value }) => value !== text.trim())
+  return others.length === 0 ? [] : [{ value: text.trim() }, ...others]
+}
+
+/**
+ * Suggestions while typing, all of them for a click into an empty field.
+ * @param {any} field @param {() => { value: string, hint?: string }[]} offers @param {(text: string) => boolean} usable
+ */
+const suggest = (field, offers, usable) => {
   field.autoComplete({
     minLength: 0,
-    search(value, answer) {
-      const wanted = value.trim().toLowerCase()
-      const found = offers().filter(offer => `${offer.value} ${offer.hint || ''}`.toLowerCase().includes(wanted))
-      answer(
-        found.slice(0, 50).map(offer => ({
-          value: offer.value,
-          label: $('<span>')
-            .text(offer.value)
-            .append(
-              $('<span>')
-                .css({ color: 'var(--red-ui-secondary-text-color)', marginLeft: '8px' })
-                .text(offer.hint || '')
-            )
-        }))
-      )
-    }
+    search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
   })
+  // the editor's widget looks when a key comes up, and says nothing when Tab or Enter have taken an offer
+  field.on('click', () => field.val() === '' && field.trigger('keyup'))
+  field.on('keydown', ({ key }) => {
+    if (key === 'Tab' || key === 'Enter') setTimeout(() => field.trigger('change'), 0)
+  })
+}
 
 /** A code to copy: a click puts it on the clipboard. */
 const copyable = text =>
@@ -93,11 +109,11 @@ const say = (block, text, bad = false) =>
     .text(text)
     .css('color', bad ? 'var(--red-ui-text-color-error)' : 'var(--red-ui-secondary-text-color)')
 
-/** A small input of a table, with its name as placeholder and tooltip. */
-const cell = (name, value, { width = '80px', grow = false } = {}) =>
+/** A small input of a table, with its name (or what an empty one means) as placeholder, and a tooltip. */
+const cell = (name, value, { width = '80px', grow = false, shows = t(`column.${name}`) } = {}) =>
   $('<input type="text">')
     .addClass(`nxline-${name}`)
-    .attr({ placeholder: t(`column.${name}`), title: t(`tooltip.${name}`), 'aria-label': t(`column.${name}`) })
+    .attr({ placeholder: shows, title: t(`tooltip.${name}`), 'aria-label': t(`column.${name}`) })
     .css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 })
     .val(value === undefined || value === null ? '' : String(value))
 
@@ -112,11 +128,14 @@ const pick = (name, value, options) => {
   return field
 }
 
+/** A flag may have been saved as a text. */
+const truthy = value => Boolean(value) && value !== 'false'
+
 const tick = (name, value) => {
   const box = $('<input type="checkbox">')
     .addClass(`nxline-${name}`)
     .css({ width: 'auto', margin: '0 4px 0 0' })
-    .prop('checked', Boolean(value) && value !== 'false')
+    .prop('checked', truthy(value))
   const label = $('<label>')
     .css({ width: 'auto', margin: 0, display: 'inline-flex', alignItems: 'center', whiteSpace: 'nowrap' })
     .attr('title', t(`tooltip.${name}`))
@@ -132,4 +151,4 @@ const mark = text =>
 const flex = (...children) =>
   $('<div>').css({ display: 'flex', gap: '4px', alignItems: 'center', marginBottom: '3px' }).append(children)
 
-module.exports = { tabs, fillDefaults, suggest, copyable, note, say, cell, pick, tick, flex, mark }
+module.exports = { tabs, fillDefaults, suggest, offersFor, copyable, note, say, cell, pick, tick, truthy, flex, mark }

@@ -75,7 +75,8 @@ describe('validators', () => {
     access: 'read',
     tags: [{ name: 'level', address: 'W10', type: 'float32' }]
   }
-  const { types } = loadDialogs({ nodes: [line, plc] })
+  const unnamed = { id: 'unnamed', type: 'nx-config', line: 'line', name: '', station: '7' }
+  const { types } = loadDialogs({ nodes: [line, plc, unnamed] })
   const judge = (type, name, value, node = {}) =>
     types[type].defaults[name].validate.call({ id: 'own', ...node }, value, {})
 
@@ -119,7 +120,9 @@ describe('validators', () => {
     ['nx-read', 'items', ['M0', 'K127.16'], /0 to 15/, { plc: 'plc' }],
     ['nx-write', 'target', '', true, { plc: 'plc' }],
     ['nx-write', 'target', 'M0', /Oven is read-only/, { plc: 'plc' }],
-    ['nx-write', 'target', 'nothing', /not an address/, { plc: 'plc' }]
+    ['nx-write', 'target', 'nothing', /not an address/, { plc: 'plc' }],
+    ['nx-write', 'target', 'M0', /^NX PLC 7 is read-only/, { plc: 'unnamed' }],
+    ['nx-config', 'station', '7', /^NX PLC 7 on this line/, { line: 'line' }]
   ]
   for (const [type, name, value, expected, node] of cases) {
     it(`${type}.${name} ${JSON.stringify(value)}${node ? ` with ${JSON.stringify(node)}` : ''}`, () => {

@@ -143,7 +143,7 @@ class NxPlc {
    * @param {{ item: string, value: any, fixed?: boolean }[]} entries at most 1000; `fixed` of one as in the options
    * @param {object} [options]
    * @param {boolean} [options.fixed] the targets were fixed by the flow's author, not by a message
-   * @param {boolean} [options.verify] read back; decides also what an unanswered write has become
+   * @param {boolean} [options.verify] read back and compare; confirms also an unanswered write that reads so
    * @param {boolean} [options.coalesce] a write of the same items that still waits is replaced (its outcome: SUPERSEDED)
    * @returns {Promise<import('./outcome').Outcome>} never rejects
    */

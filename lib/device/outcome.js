@@ -6,7 +6,7 @@ const { asPlcError } = require('./talk')
  *
  * @typedef {'confirmed'|'unknown'|'refused'|'failed'} Word confirmed: the station acknowledged it (and it reads so, with
  *   `verify`); unknown: it went out and no answer says whether it was carried out; refused: by a guard before anything was
- *   sent, or by the station; failed: it never went out, or reads otherwise
+ *   sent, or by the station; failed: it never went out, or was acknowledged and reads otherwise
  * @typedef {object} ItemOutcome
  * @property {string} item as the user wrote it
  * @property {string} name

@@ -247,7 +247,8 @@ const judge = (fate, { values, text, station }, reading) => {
     expected: shown(values),
     cause: fate.error
   })
-  return { outcome: 'failed', error }
+  // without an acknowledgement nobody knows whether the PLC's program took it and set it back: a command bit may have been carried out
+  return { outcome: fate.outcome === 'unknown' ? 'unknown' : 'failed', error }
 }
 
 module.exports = { Writer }

@@ -45,10 +45,17 @@ class Driver {
   /** The conversation goes on by one step: at once, or when its station may be asked again. */
   #resume(run, error, answer) {
     if (!run.advance(error, answer)) return
+    this.#announce(run)
     const refusal = this.#host.refusal()
     if (refusal) run.stop(refusal)
     else if (this.#scheduler.isReady(run.station)) this.#go(run)
     else this.#scheduler.hold(run)
+  }
+
+  #announce({ station, step, latenessBound }) {
+    if (!step.match) return
+    const bound = latenessBound || this.#least.latenessBound
+    this.#quarantine.asks(station, { timeout: step.timeout, latenessBound: bound })
   }
 
   #go(run) {
@@ -64,10 +71,7 @@ class Driver {
 
   #sent(run) {
     run.sent = true
-    const { station, step } = run
-    const latenessBound = run.latenessBound || this.#least.latenessBound
-    if (step.match) this.#quarantine.asked(station, { timeout: step.timeout, latenessBound })
-    this.#recorder.sent(station, step.send, run.label)
+    this.#recorder.sent(run.station, run.step.send, run.label)
   }
 
   #ended(run, error, answer, facts) {

@@ -9,6 +9,10 @@ const MOST_GRACE = 250
 
 const TOLERANCE = 0.001
 
+/** A gap whose end is seen this late (ms) may hide bytes that nobody has read yet: they get a moment to come in. */
+const LATE_GAP = 5
+const BREATH = 5
+
 /**
  * One step on the wire at a time: gap, sending, answer. Synchronous: `done(error, answer)` is called from a timer or from
  * the arrival of bytes. Knows no stations and no queue.
@@ -70,11 +74,16 @@ class Exchange {
     const job = this.#job
     const now = this.#clock.now()
     const free = this.quietSince + job.gap
-    if (now >= free - TOLERANCE) return this.#send()
+    // once: a process that is always late must send all the same
+    const overslept = !job.rested && now - Math.max(free, job.wokenAt ?? now) >= LATE_GAP
+    if (now >= free - TOLERANCE && !overslept) return this.#send()
     if (job.bytes > 0 && now - job.from >= this.#settings.jamTime) {
       return this.#settle(new PlcError('LINE_JAMMED', { line: this.#link.name, bytes: job.bytes, sent: false }))
     }
-    this.#timer = this.#clock.setTimer(this.#whenSilent, free - now)
+    if (overslept) job.rested = true
+    const wait = overslept ? BREATH : free - now
+    job.wokenAt = now + wait
+    this.#timer = this.#clock.setTimer(this.#whenSilent, wait)
   }
 
   #send() {

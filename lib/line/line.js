@@ -55,7 +55,8 @@ class Line extends EventEmitter {
     this.#times = lineTimes(settings)
     this.#recorder = new Recorder(clock)
     const late = (fact, frame) => this.#late(fact, frame)
-    this.#quarantine = new Quarantine({ clock, memories, late, freed: () => this.#driver.pump() })
+    const hasPast = settings.transport !== 'simulated'
+    this.#quarantine = new Quarantine({ clock, memories, late, hasPast, freed: () => this.#driver.pump() })
     const readyAt = station => this.#quarantine.readyAt(station)
     this.#scheduler = new Scheduler({ clock, settings, readyAt, awake: () => this.#driver.pump() })
     this.#echo = new Echo(settings.echo)

@@ -24,14 +24,18 @@ class Quarantine {
   #memories
   #late
   #freed
+  #hasPast
+  #openedAt = -Infinity
   /** newest first */
   #watchers = []
 
   /**
-   * @param {{ clock: any, memories: Map<any, any>, late: (fact: any, bytes: Buffer) => void, freed: () => void }} options
-   *   memories: per station, kept by the pool; late: told of each late answer; freed: a station may be asked earlier
+   * @param {{ clock: any, memories: Map<any, any>, late: (fact: any, bytes: Buffer) => void, freed: () => void,
+   *   hasPast: boolean }} options memories: per station, kept by the pool; late: told of each late answer; freed: a station
+   *   may be asked earlier; hasPast: before this process another one, or another master, may have asked on this wire
    */
-  constructor({ clock, memories, late, freed }) {
+  constructor({ clock, memories, late, freed, hasPast }) {
+    this.#hasPast = hasPast
     this.#clock = clock
     this.#memories = memories
     this.#late = late
@@ -48,12 +52,16 @@ class Quarantine {
     return memory
   }
 
-  /** A step goes out. @param {any} station @param {{ timeout: number, latenessBound: number }} times */
-  asked(station, { timeout, latenessBound }) {
+  /**
+   * A step is about to go out. The first one to a station waits until what was asked before this process cannot be answered any more.
+   * @param {any} station @param {{ timeout: number, latenessBound: number }} times
+   */
+  asks(station, { timeout, latenessBound }) {
     const memory = this.memory(station)
-    memory.asked = true
     memory.base = latenessBound > 0 ? latenessBound : Math.max(timeout, LEAST_BOUND)
     this.#bind(memory)
+    if (!memory.asked && this.#hasPast) memory.until = Math.max(memory.until, this.#openedAt + memory.bound)
+    memory.asked = true
   }
 
   #bind(memory) {
@@ -99,6 +107,7 @@ class Quarantine {
   /** The port was opened: what lies in the buffers of adapters and servers may be answers to old queries. */
   opened() {
     const now = this.#clock.now()
+    this.#openedAt = now
     for (const memory of this.#memories.values()) {
       if (memory.asked) memory.until = Math.max(memory.until, now + memory.bound)
     }

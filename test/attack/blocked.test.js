@@ -33,3 +33,20 @@ describe('attack: a process that is blocked when a quarantine ends', () => {
     await clock.run(lease.release())
   })
 })
+
+describe('attack: a process that is blocked while the gap before a query runs', () => {
+  it('reads the duplicate of the last answer before it asks again', async () => {
+    const clock = createVirtualClock()
+    const wire = createWire(clock, (_bytes, { reply, sent }) => {
+      if (sent.length > 1) return reply.call(wire, toy.answer(1, [222]))
+      reply.call(wire, toy.answer(1, [111]))
+      clock.setTimer(() => wire.handlers.data(toy.answer(1, [111])), 201)
+    })
+    const blocked = blockedClock(clock, { from: 10, to: 200 })
+    const pool = createPool({ clock: blocked, random: () => 0.5 })
+    const lease = pool.open({ transport: 'simulated', wire, gap: 20 }, { id: 'a', name: 'a' })
+    assert.deepEqual(await clock.run(lease.run(() => toy.ask(1), { station: 1 })), [111])
+    assert.deepEqual(await clock.run(lease.run(() => toy.ask(1), { station: 1 })), [222])
+    await clock.run(lease.release())
+  })
+})

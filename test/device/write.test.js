@@ -151,13 +151,13 @@ describe('NX PLC: writing', () => {
     }
   })
 
-  it('reading back decides what an unanswered write has become', async () => {
+  it('reading back confirms an unanswered write; one that reads otherwise stays unknown', async () => {
     start()
     b.faults.once('silent')
     assert.equal((await write([entry('K0', 5)], { verify: true })).outcome, 'confirmed')
     b.faults.once('lost')
     const lost = await write([entry('K0', 6)], { verify: true })
-    assert.deepEqual([lost.outcome, lost.code], ['failed', 'VERIFY_FAILED'])
+    assert.deepEqual([lost.outcome, lost.code], ['unknown', 'VERIFY_FAILED'])
     assert.match(lost.text, /K0 reads 5h after 6h was written/)
     assert.equal(b.station.writes.get('word:320'), 1)
   })

@@ -52,7 +52,7 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     const clock = fastClock(10)
     const pool = createPool({ clock, random: () => 0.5 })
     const cycle = async n => {
-      const lease = pool.open({ path: link, baudRate: 115200, slack: 2000 }, { id: 'a', name: 'a' })
+      const lease = pool.open({ path: link, baudRate: 115200, slack: 2000, latenessBound: 1 }, { id: 'a', name: 'a' })
       await reached(lease, 'open')
       const asked = lease.run(() => toy.ask(1, { timeout: 5000 }), { station: n })
       // some in the middle of an exchange
@@ -76,7 +76,7 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     const pty = createPty({ link })
     pty.onData(bytes => pty.write(toy.answer(bytes[1], [1], bytes[2])))
     const pool = createPool({ clock: fastClock(50), random: () => 0 })
-    const lease = pool.open({ path: link, baudRate: 115200, slack: 5000 }, { id: 'a', name: 'a' })
+    const lease = pool.open({ path: link, baudRate: 115200, slack: 5000, latenessBound: 1 }, { id: 'a', name: 'a' })
     let files, handles
     for (let n = 0; n < 50; n++) {
       await reached(lease, 'open')

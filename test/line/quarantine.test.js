@@ -1,6 +1,9 @@
 'use strict'
 
 const assert = require('node:assert/strict')
+const { createPool } = require('../../lib/line')
+const { simulated } = require('../../lib/line/transports/memory')
+const { createVirtualClock } = require('../../lib/sim')
 const { createBench, failure } = require('./support/bench')
 const toy = require('./support/toy')
 
@@ -214,6 +217,45 @@ describe('line: quarantine', () => {
     assert.ok(bench.clock.now() - start < 20)
     await bench.run(ask(bench, 1))
     assert.ok(bench.clock.now() - start > 900)
+  })
+
+  describe('before the first query to a station, where others may have asked before us', () => {
+    const opened = (settings, wire) => {
+      const clock = createVirtualClock()
+      const serial = (_settings, itsClock) => simulated({ wire, path: 'a' }, itsClock)
+      const pool = createPool({ clock, random: () => 0.5, transports: { serial } })
+      const raw = { transport: 'serial', path: '/dev/a', baudRate: 19200, ...settings }
+      return { clock, lease: pool.open(raw, { id: 'a', name: 'a' }) }
+    }
+    const silentUntil = async (settings, timeout) => {
+      const sentAt = []
+      const wire = {
+        connect: ({ data }) => ({
+          write(bytes) {
+            sentAt.push(clock.now())
+            clock.setTimer(() => data(toy.answer(bytes[1], [7])), 10)
+          },
+          close() {}
+        })
+      }
+      const { clock, lease } = opened(settings, wire)
+      const once = () => clock.run(lease.run(() => toy.ask(1, { timeout }), { station: 1 }))
+      await once()
+      await once()
+      await clock.run(lease.release())
+      return sentAt
+    }
+
+    it('the timeout of the query, for an older one may still be answered; then no more', async () => {
+      const [first, second] = await silentUntil({}, 3000)
+      near(first, 3000, 'from opening to the first query')
+      assert.ok(second - first < 50)
+    })
+
+    it('a second at the least, or what the line is told', async () => {
+      near((await silentUntil({}, 200))[0], 1000, 'short timeout')
+      near((await silentUntil({ latenessBound: 40 }, 3000))[0], 40, 'setting')
+    })
   })
 
   it('follows a run that was given up, until its answer has come', async () => {

@@ -51,6 +51,8 @@ const lineNode = (wire, more = {}) => ({
   host: '127.0.0.1',
   port: String(wire.port),
   baudRate: '115200',
+  // the simulator has no past: nobody asked before
+  latenessBound: '1',
   ...more
 })
 
@@ -111,12 +113,23 @@ const statuses = id => {
   return seen
 }
 
+/** The ends of each message that a node is given from now on: how often `done` was called for it, by its payload. */
+const endsOf = id => {
+  const { hooks } = require(RED)
+  const ends = new Map()
+  hooks.add('onComplete.test', ({ node, msg }) => {
+    if (node.id === id) ends.set(msg.payload, (ends.get(msg.payload) ?? 0) + 1)
+  })
+  return { ends, forget: () => hooks.remove('*.test') }
+}
+
 module.exports = {
   NODES,
   ON_TAB,
   TAB,
   catcher,
   collect,
+  endsOf,
   helper,
   lineNode,
   load,

@@ -87,7 +87,7 @@ async function startLines() {
   }
   const pty = serveOnPty({ wire: wires[0], link: path.join(folder, 'line') })
   const tcp = await serveOnTcp({ wire: wires[1] })
-  const common = { baudRate: 115200 }
+  const common = { baudRate: 115200, latenessBound: 20 }
   return {
     pty,
     tcp,

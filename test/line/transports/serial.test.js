@@ -34,7 +34,10 @@ const answering = pty => bytes => pty.write(toy.answer(bytes[1], [bytes[1], 2, 3
 
   const open = (extra = {}) => {
     const owner = `reader ${leases.length + 1}`
-    const lease = pool.open({ path: link, baudRate: 115200, slack: 2000, ...extra }, { id: owner, name: owner })
+    const lease = pool.open(
+      { path: link, baudRate: 115200, slack: 2000, latenessBound: 1, ...extra },
+      { id: owner, name: owner }
+    )
     leases.push(lease)
     return lease
   }

@@ -39,7 +39,10 @@ const answering = (bytes, socket) => socket.write(toy.answer(bytes[1], [bytes[1]
 describe('tcp transport', () => {
   let server, pool, lease
   const open = ({ port = server.port(), ...extra } = {}) => {
-    lease = pool.open({ transport: 'tcp', host: '127.0.0.1', port, baudRate: 115200, ...extra }, { id: 'a', name: 'a' })
+    lease = pool.open(
+      { transport: 'tcp', host: '127.0.0.1', port, baudRate: 115200, latenessBound: 1, ...extra },
+      { id: 'a', name: 'a' }
+    )
     return lease
   }
   const ask = options => lease.run(() => toy.ask(5, { timeout: 5000, ...options }), { station: 5, latenessBound: 5 })
@@ -136,7 +139,7 @@ describe('tcp transport', () => {
     }
     await reached(lease, 'open')
     const promise = failure(lease.run(make, { station: 1 }))
-    await new Promise(resolve => setImmediate(resolve))
+    while (lease.line.stats().bytesOut < 256) await new Promise(resolve => setImmediate(resolve))
     await lease.release()
     await all
     assert.equal((await promise).code, 'LINE_CLOSED')

@@ -155,6 +155,7 @@ describe('examples', function () {
       const flow = await deploy(load('06'), node => quick(node.type === 'plc-line' ? { ...node, ...real } : node))
       const alarm = find(flow, 'debug', 'ALARM').id
       await red.next(find(flow, 'debug', 'values').id)
+      await red.next(alarm, value => value.alarm === false)
       stations.silence(true)
       const on = await red.next(alarm, value => value.alarm === true)
       assert.equal(on.code, 'TIMEOUT')

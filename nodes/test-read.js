@@ -42,7 +42,8 @@ const checkPath = async (RED, path) => {
   throw new PlcError('BAD_SETTING', {
     setting: 'path',
     value: path,
-    reason: 'a port that is not in the list of ports can be tested once it is deployed'
+    reason: 'a port that is not in the list of ports can be tested once it is deployed',
+    deployFirst: true
   })
 }
 

@@ -1668,14 +1668,15 @@ var nxlineSerialPlc = (() => {
         return others.length === 0 ? [] : [{ value: text.trim() }, ...others];
       };
       var suggest = (field, offers, usable) => {
+        field.on("keydown", ({ key }) => {
+          const before = field.val();
+          if (key === "Tab" || key === "Enter") setTimeout(() => field.val() !== before && field.trigger("change"), 0);
+        });
         field.autoComplete({
           minLength: 0,
           search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
         });
         field.on("click", () => field.val() === "" && field.trigger("keyup"));
-        field.on("keydown", ({ key }) => {
-          if (key === "Tab" || key === "Enter") setTimeout(() => field.trigger("change"), 0);
-        });
       };
       var copyable = (text) => $('<a href="#" class="nxline-copy">').css({ fontFamily: "var(--red-ui-monospace-font)", whiteSpace: "nowrap" }).attr("title", t("editor.copy")).text(text).prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>').on("click", function(event) {
         event.preventDefault();
@@ -2086,10 +2087,12 @@ var nxlineSerialPlc = (() => {
         };
       };
       var showResult = (text, colour) => $("#nxline-nx-test-result").show().text(text).css({ borderLeft: `4px solid var(${colour})` });
-      var sentence = (answer) => answer.ok ? [t("test.ok", answer), "--red-ui-text-color-success"] : [
-        t(answer.reached ? "test.reached" : "test.failed", { text: errorText(answer.error) }),
-        "--red-ui-text-color-error"
-      ];
+      var failure = ({ reached, error }) => {
+        const { deployFirst, value: path } = error.details || {};
+        if (deployFirst) return t("test.deployFirst", { path });
+        return t(reached ? "test.reached" : "test.failed", { text: errorText(error) });
+      };
+      var sentence = (answer) => answer.ok ? [t("test.ok", answer), "--red-ui-text-color-success"] : [failure(answer), "--red-ui-text-color-error"];
       var httpError = (xhr) => {
         const error = xhr.responseJSON && xhr.responseJSON.error || null;
         if (error) return { ok: false, error };
@@ -2168,19 +2171,26 @@ var nxlineSerialPlc = (() => {
       }));
       var isItem = (text) => attempt(() => Boolean(parseItem(text, notationWithTags(plcOf()))), false);
       var itemTexts = () => $("#nxline-read-items").editableList("items").toArray().map((row) => row.data("nxline").read()).filter((text) => text !== "");
-      var judgeItem = (text, block) => {
-        if (!text) return say(block, t("editor.itemHint"));
-        if (isVariable(text)) return say(block, t("editor.variable"));
+      var verdictOf = (text) => {
+        if (!text) return { says: t("editor.itemHint") };
+        if (isVariable(text)) return { says: t("editor.variable") };
         const plc = plcOf();
         const notation = notationWithTags(plc);
         try {
           const item = parseItem(text, notation);
           const sure = unsure(item, notation) ? ` · ${t("editor.unconfirmed")}` : "";
-          say(block, `${describe(item, plc || {})}${sure} · `);
-          return block.append(copyable(value("format") === "object" ? `msg.payload.${item.name}` : item.name));
+          const key = value("format") === "object" ? `msg.payload.${item.name}` : item.name;
+          return { says: `${describe(item, plc || {})}${sure} · `, key };
         } catch (error) {
-          return say(block, errorText(error), true);
+          return { says: errorText(error), bad: true };
         }
+      };
+      var judgeItem = (text, block) => {
+        const verdict = verdictOf(text);
+        const signature = JSON.stringify(verdict);
+        if (block.data("nxline") === signature) return;
+        say(block, verdict.says, verdict.bad).data("nxline", signature);
+        if (verdict.key) block.append(copyable(verdict.key));
       };
       var addItem = (container, data) => {
         const field = $('<input type="text" class="nxline-item">').css({ flexGrow: 1, margin: 0 }).attr({ placeholder: t("editor.itemExample"), "aria-label": t("editor.item") }).val(typeof data === "string" ? data : data.text || "");

@@ -27,19 +27,29 @@ const itemTexts = () =>
     .map(row => row.data('nxline').read())
     .filter(text => text !== '')
 
-const judgeItem = (text, block) => {
-  if (!text) return say(block, t('editor.itemHint'))
-  if (isVariable(text)) return say(block, t('editor.variable'))
+/** What stands under an item: a sentence, and the key of its value to copy. */
+const verdictOf = text => {
+  if (!text) return { says: t('editor.itemHint') }
+  if (isVariable(text)) return { says: t('editor.variable') }
   const plc = plcOf()
   const notation = notationWithTags(plc)
   try {
     const item = parseItem(text, notation)
     const sure = unsure(item, notation) ? ` · ${t('editor.unconfirmed')}` : ''
-    say(block, `${describe(item, plc || {})}${sure} · `)
-    return block.append(copyable(value('format') === 'object' ? `msg.payload.${item.name}` : item.name))
+    const key = value('format') === 'object' ? `msg.payload.${item.name}` : item.name
+    return { says: `${describe(item, plc || {})}${sure} · `, key }
   } catch (error) {
-    return say(block, errorText(error), true)
+    return { says: errorText(error), bad: true }
   }
+}
+
+const judgeItem = (text, block) => {
+  const verdict = verdictOf(text)
+  const signature = JSON.stringify(verdict)
+  // the key may have the focus: it stays the same element while it says the same
+  if (block.data('nxline') === signature) return
+  say(block, verdict.says, verdict.bad).data('nxline', signature)
+  if (verdict.key) block.append(copyable(verdict.key))
 }
 
 const addItem = (container, data) => {

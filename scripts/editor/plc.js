@@ -71,13 +71,14 @@ const showResult = (text, colour) =>
     .text(text)
     .css({ borderLeft: `4px solid var(${colour})` })
 
+const failure = ({ reached, error }) => {
+  const { deployFirst, value: path } = error.details || {}
+  if (deployFirst) return t('test.deployFirst', { path })
+  return t(reached ? 'test.reached' : 'test.failed', { text: errorText(error) })
+}
+
 const sentence = answer =>
-  answer.ok
-    ? [t('test.ok', answer), '--red-ui-text-color-success']
-    : [
-        t(answer.reached ? 'test.reached' : 'test.failed', { text: errorText(answer.error) }),
-        '--red-ui-text-color-error'
-      ]
+  answer.ok ? [t('test.ok', answer), '--red-ui-text-color-success'] : [failure(answer), '--red-ui-text-color-error']
 
 const httpError = xhr => {
   const error = (xhr.responseJSON && xhr.responseJSON.error) || null

@@ -71,15 +71,17 @@ const offersFor = (text, offers, usable) => {
  * @param {any} field @param {() => { value: string, hint?: string }[]} offers @param {(text: string) => boolean} usable
  */
 const suggest = (field, offers, usable) => {
+  // the editor's widget says nothing when Tab or Enter have taken an offer; this handler comes before its own
+  field.on('keydown', ({ key }) => {
+    const before = field.val()
+    if (key === 'Tab' || key === 'Enter') setTimeout(() => field.val() !== before && field.trigger('change'), 0)
+  })
   field.autoComplete({
     minLength: 0,
     search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
   })
-  // the editor's widget looks when a key comes up, and says nothing when Tab or Enter have taken an offer
+  // it looks when a key comes up
   field.on('click', () => field.val() === '' && field.trigger('keyup'))
-  field.on('keydown', ({ key }) => {
-    if (key === 'Tab' || key === 'Enter') setTimeout(() => field.trigger('change'), 0)
-  })
 }
 
 /** A code to copy: a click puts it on the clipboard. */

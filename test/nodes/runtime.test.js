@@ -158,6 +158,14 @@ describe('nodes in a real Node-RED', function () {
     assert.equal(json.error.code, 'CONNECT_FAILED')
   })
 
+  it('test of a port that is neither deployed nor listed: the dialog can say that it must be deployed first', async () => {
+    const line = { id: 'new', transport: 'serial', path: '/dev/tty-nowhere' }
+    const { status, json } = await test({ plc: plc({ line: 'new' }), line })
+    assert.equal(status, 400)
+    assert.equal(json.error.details.deployFirst, true)
+    assert.equal(json.error.details.value, '/dev/tty-nowhere')
+  })
+
   for (const [what, body] of [
     ['nothing', undefined],
     ['an array', []],

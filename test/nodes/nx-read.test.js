@@ -22,8 +22,12 @@ describe('nx-read', () => {
   })
   afterEach(async () => {
     await helper.unload()
-    assert.equal(wire.connections(), 0, 'a connection is left')
-    await wire.close()
+    try {
+      // the simulator hears of it a moment later
+      await until(() => wire.connections() === 0, 'the end of the connection')
+    } finally {
+      await wire.close()
+    }
   })
 
   const ask = async (config, { plc = {}, msg = {} } = {}) => {
@@ -192,21 +196,21 @@ describe('nx-read', () => {
   it('a polled error is reported once, when the state changes', async () => {
     const { out, caught } = await load([
       lineNode(wire),
-      plcNode({ timeout: '20' }),
+      plcNode({ attempts: '1' }),
       reader({ items: ['M0'], interval: '20' })
     ])
     await until(() => out.length > 1)
     const [plc] = wire.plcs
     plc.set('M0', 1)
-    // one error only while every poll fails: the PLC refuses each of them
-    wire.wire.setOff(1, true)
+    // the PLC refuses each poll: no quarantine between them, as after a silence
+    wire.faults.set('error', 1, 4)
     await until(() => caught.length > 0)
     const sent = out.length
-    await tick(50)
+    await until(() => plc.counts.errors >= 5, 'more refused polls')
     assert.equal(caught.length, 1)
-    assert.equal(caught[0].error.code, 'TIMEOUT')
+    assert.equal(caught[0].error.code, 'PLC_NOT_PERFORMED')
     assert.equal(out.length, sent)
-    wire.wire.setOff(1, false)
+    wire.faults.clear()
     await until(() => out.length > sent, 'recovery')
     assert.equal(out.at(-1).payload.M0, 1)
   })

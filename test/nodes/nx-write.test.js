@@ -17,8 +17,12 @@ describe('nx-write', () => {
   })
   afterEach(async () => {
     await helper.unload()
-    assert.equal(wire.connections(), 0, 'a connection is left')
-    await wire.close()
+    try {
+      // the simulator hears of it a moment later
+      await until(() => wire.connections() === 0, 'the end of the connection')
+    } finally {
+      await wire.close()
+    }
   })
 
   const writes = () => [...wire.plcs[0].writes.values()].reduce((sum, count) => sum + count, 0)
@@ -147,7 +151,6 @@ describe('nx-write', () => {
   })
 
   it('no answer: unknown, sent exactly once, as an error', async () => {
-    wire.faults.inject?.('lost')
     wire.wire.setOff(1, true)
     const { error, write } = await refused({ target: 'K1' }, { payload: 1 }, { timeout: '60' })
     assert.equal(write.outcome, 'unknown')

@@ -1656,13 +1656,15 @@ var nxlineSerialPlc = (() => {
           }
         }
       };
-      var offerRow = ({ value, hint = "" }) => ({
+      var offerRow = ({ value, hint = "", first = "" }) => ({
         value,
-        label: $("<span>").text(value).append($("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(hint))
+        label: $("<span>").text(first || value).append(
+          $("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(first ? value : hint)
+        )
       });
       var offersFor = (text, offers, usable) => {
         const wanted = text.trim().toLowerCase();
-        const found = offers.filter(({ value, hint = "" }) => `${value} ${hint}`.toLowerCase().includes(wanted)).slice(0, 50);
+        const found = offers.filter((offer) => `${offer.value} ${offer.hint || ""} ${offer.first || ""}`.toLowerCase().includes(wanted)).slice(0, 50);
         if (wanted === "" || found.length === 0 || !usable(text.trim())) return found;
         const others = found.filter(({ value }) => value !== text.trim());
         return others.length === 0 ? [] : [{ value: text.trim() }, ...others];
@@ -1757,7 +1759,7 @@ var nxlineSerialPlc = (() => {
         });
         suggest(
           $(`#${PREFIX}path`),
-          () => ports.map((port) => ({ value: port.path, hint: port.label })),
+          () => ports.map((port) => ({ value: port.path, first: port.label })),
           () => true
         );
         suggest(
@@ -2090,7 +2092,8 @@ var nxlineSerialPlc = (() => {
       var failure = ({ reached, error }) => {
         const { deployFirst, value: path } = error.details || {};
         if (deployFirst) return t("test.deployFirst", { path });
-        return t(reached ? "test.reached" : "test.failed", { text: errorText(error) });
+        const text = errorText(error).replace(/^(?:the|station)\b/, (word) => word[0].toUpperCase() + word.slice(1));
+        return reached ? t("test.reached", { text: errorText(error) }) : t("test.failed", { text });
       };
       var sentence = (answer) => answer.ok ? [t("test.ok", answer), "--red-ui-text-color-success"] : [failure(answer), "--red-ui-text-color-error"];
       var httpError = (xhr) => {

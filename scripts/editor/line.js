@@ -55,7 +55,7 @@ const editLine = node => {
     })
   suggest(
     $(`#${PREFIX}path`),
-    () => ports.map(port => ({ value: port.path, hint: port.label })),
+    () => ports.map(port => ({ value: port.path, first: port.label })),
     () => true
   )
   suggest(

@@ -74,7 +74,9 @@ const showResult = (text, colour) =>
 const failure = ({ reached, error }) => {
   const { deployFirst, value: path } = error.details || {}
   if (deployFirst) return t('test.deployFirst', { path })
-  return t(reached ? 'test.reached' : 'test.failed', { text: errorText(error) })
+  // an error's text is made to follow a name; here it is the sentence
+  const text = errorText(error).replace(/^(?:the|station)\b/, word => word[0].toUpperCase() + word.slice(1))
+  return reached ? t('test.reached', { text: errorText(error) }) : t('test.failed', { text })
 }
 
 const sentence = answer =>

@@ -44,23 +44,30 @@ const fillDefaults = (node, prefix) => {
   }
 }
 
-const offerRow = ({ value, hint = '' }) => ({
+/** `first` stands before the value where it says more than the value does: the name of an adapter. */
+const offerRow = ({ value, hint = '', first = '' }) => ({
   value,
   label: $('<span>')
-    .text(value)
-    .append($('<span>').css({ color: 'var(--red-ui-secondary-text-color)', marginLeft: '8px' }).text(hint))
+    .text(first || value)
+    .append(
+      $('<span>')
+        .css({ color: 'var(--red-ui-secondary-text-color)', marginLeft: '8px' })
+        .text(first ? value : hint)
+    )
 })
 
 /**
  * What is offered for a text. Tab and Enter take the first offer: where the text means something by itself it comes first, so that leaving
  * the field never turns M1 into a tag that has M10.
  * @param {string} text as typed
- * @param {{ value: string, hint?: string }[]} offers
+ * @param {{ value: string, hint?: string, first?: string }[]} offers
  * @param {(text: string) => boolean} usable whether a text can stand as it is
  */
 const offersFor = (text, offers, usable) => {
   const wanted = text.trim().toLowerCase()
-  const found = offers.filter(({ value, hint = '' }) => `${value} ${hint}`.toLowerCase().includes(wanted)).slice(0, 50)
+  const found = offers
+    .filter(offer => `${offer.value} ${offer.hint || ''} ${offer.first || ''}`.toLowerCase().includes(wanted))
+    .slice(0, 50)
   if (wanted === '' || found.length === 0 || !usable(text.trim())) return found
   const others = found.filter(({ value }) => value !== text.trim())
   return others.length === 0 ? [] : [{ value: text.trim() }, ...others]

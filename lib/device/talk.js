@@ -77,9 +77,11 @@ class Talk {
 
   *#reading(query, key) {
     const last = this.#begin()
-    const { soleMaster } = this.#settings
+    const { soleMaster, masterIds: row } = this.#settings
+    // with one ID there is nothing to find out
+    const trial = row.length > 1 ? this.#watch.trial() : undefined
     const same = soleMaster && last && last.key === key && last.stray === strayOf(this.#lease)
-    const options = { ...this.#options(this.#watch.trial()), again: same ? last.master : undefined }
+    const options = { ...this.#options(trial), again: same ? last.master : undefined }
     const result = yield* this.#watched(readDialog(query, options), options)
     this.#note(result)
     if (soleMaster) this.#memory.lastRead = { key, master: result.master, stray: strayOf(this.#lease) }

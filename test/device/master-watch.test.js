@@ -9,9 +9,9 @@ describe('NX PLC: a station that answers to one master ID only', () => {
     await b.close()
     assert.equal(b.clock.pending(), 0, 'a timer is left')
   })
-  const start = station => {
+  const start = (station, plc = {}) => {
     const events = []
-    b = bench({ sim: { stations: [{ station: 1, ...station }] }, plc: { attempts: 1 } })
+    b = bench({ sim: { stations: [{ station: 1, ...station }] }, plc: { attempts: 1, ...plc } })
     b.lease.on('event', event => events.push(event))
     const read = async () => (await b.run(b.device.read(['M0'])))[0].code ?? 'good'
     return { events, read }
@@ -54,6 +54,16 @@ describe('NX PLC: a station that answers to one master ID only', () => {
     }
     assert.ok(codes.includes('TIMEOUT'))
     assert.deepEqual(codes.slice(-3), ['good', 'good', 'good'])
+    assert.deepEqual(events, [])
+  })
+
+  it('one ID that was set is not advised again, however lossy the line', async () => {
+    const { events, read } = start({}, { masterIds: 'E4' })
+    for (let i = 0; i < 8; i++) {
+      assert.equal(await read(), 'good')
+      b.faults.once('silent')
+      assert.equal(await read(), 'TIMEOUT')
+    }
     assert.deepEqual(events, [])
   })
 })

@@ -44,6 +44,17 @@ describe('NX PLC: reading', () => {
     })
   }
 
+  it('a bit of an area that has only words is that bit of its word, in ranges too', async () => {
+    start()
+    b.station.set('W3', 0x8020)
+    b.station.set('W4', 0x0001)
+    const results = await read(['W3.5', 'W3.6', 'W3.4..W3.6', 'W3.14..W4.1'])
+    assert.deepEqual(
+      results.map(({ value }) => value),
+      [true, false, [false, true, false], [false, true, true, false]]
+    )
+  })
+
   it('the manual’s program: M0..M127 is one request', async () => {
     start()
     for (let at = 0; at < 128; at++) b.station.set(`M${at}`, at * 3)

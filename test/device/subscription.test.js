@@ -75,6 +75,17 @@ describe('NX PLC: polling', () => {
     assert.deepEqual(news, ['good,good', 'TIMEOUT', 'good,good'])
   })
 
+  it('one bad item of several is no failure of the cycle, and a cycle has its duration', async () => {
+    start()
+    const cycles = []
+    b.device.subscribe({ items: ['K5', 'M0', '@0x1800'], interval: 1000 }, (results, cycle) =>
+      cycles.push([results.map(({ quality }) => quality).join(), cycle.failure, cycle.ms > 0 && cycle.ms < 500])
+    )
+    await b.clock.advance(2500)
+    assert.ok(cycles.length >= 2)
+    for (const cycle of cycles) assert.deepEqual(cycle, ['good,good,bad', null, true])
+  })
+
   it('recovers by itself when the adapter comes back', async () => {
     start()
     const seen = []

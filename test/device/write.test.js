@@ -162,6 +162,19 @@ describe('NX PLC: writing', () => {
     assert.equal(b.station.writes.get('word:320'), 1)
   })
 
+  it('a target counts as a message’s unless it is said to be fixed', async () => {
+    start()
+    const given = await write([entry('fixedOnly', 1)])
+    assert.deepEqual([given.outcome, given.code, given.attempts], ['refused', 'NOT_WRITABLE', 0])
+    assert.equal((await write([entry('fixedOnly', 1)], { fixed: true })).outcome, 'confirmed')
+  })
+
+  it('a tag without limits does not forbid its words under another type', async () => {
+    start()
+    assert.equal((await write([entry('K30:int16', -1)], { fixed: true })).outcome, 'confirmed')
+    assert.equal((await write([entry('K29:float32', 1)], { fixed: true })).outcome, 'confirmed')
+  })
+
   it('what cannot be read back stays unknown', async () => {
     start()
     b.faults.once('silent', { times: 10 })

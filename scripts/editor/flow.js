@@ -168,12 +168,14 @@ const judgeTarget = () => {
   const text = String(value('target') || '').trim()
   const plc = plcOf()
   const block = $('#nxline-write-note')
+  const readOnly = plc && plc.access !== 'write'
+  if (readOnly && !text) return say(block, t('problem.readOnly', { plc: plcName(plc) }), true)
   if (!text) return say(block, t('editor.noTarget'))
   if (isVariable(text)) return say(block, t('editor.variable'))
   const notation = notationWithTags(plc)
   try {
     const item = parseItem(text, notation)
-    if (plc && plc.access !== 'write') return say(block, t('problem.readOnly', { plc: plcName(plc) }), true)
+    if (readOnly) return say(block, t('problem.readOnly', { plc: plcName(plc) }), true)
     return say(block, describe(item, { ...plc, write: true }))
   } catch (error) {
     return say(block, errorText(error), true)

@@ -52,6 +52,20 @@ describe('node dialogs', () => {
     assert.equal(defaults.outputs.value, 1)
   })
 
+  it('the examples hold every property: a dialog that is closed with Done changes nothing', () => {
+    const folder = path.join(NODES, '..', 'examples')
+    for (const file of fs.readdirSync(folder).filter(name => name.endsWith('.json'))) {
+      for (const node of JSON.parse(fs.readFileSync(path.join(folder, file), 'utf8'))) {
+        const wanted = Object.keys(PROPERTIES[node.type] ?? {}).concat(node.type === 'nx-write' ? 'outputs' : [])
+        assert.deepEqual(
+          wanted.filter(name => !Object.hasOwn(node, name)),
+          [],
+          `${file} ${node.type}`
+        )
+      }
+    }
+  })
+
   it('palette: category, labels, icons that are there', () => {
     const { types } = loadDialogs()
     assert.equal(types['nx-read'].category, 'serial PLC')

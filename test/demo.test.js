@@ -1,0 +1,81 @@
+'use strict'
+
+/** `npm start` as a program: its ends. That it flows is a step of `.ci/run`. */
+
+const assert = require('node:assert/strict')
+const { spawn } = require('node:child_process')
+const { once } = require('node:events')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+
+const START = path.join(__dirname, '../examples/demo/start.js')
+
+describe('demo', function () {
+  this.timeout(30000)
+  let folder
+  const running = new Set()
+  beforeEach(() => (folder = fs.mkdtempSync(path.join(os.tmpdir(), 'demo-test-'))))
+  afterEach(async () => {
+    for (const { child, ended } of running) {
+      child.kill('SIGINT')
+      await ended
+    }
+    fs.rmSync(folder, { recursive: true, force: true })
+  })
+
+  const start = args => {
+    // its own folder for what is temporary, so that what it leaves behind is seen
+    const child = spawn(process.execPath, [START, ...args], { env: { ...process.env, TMPDIR: folder } })
+    const demo = { child, out: '', err: '', ended: once(child, 'exit') }
+    child.stdout.on('data', text => (demo.out += text))
+    child.stderr.on('data', text => (demo.err += text))
+    running.add(demo)
+    demo.ended.then(() => running.delete(demo))
+    return demo
+  }
+  const shown = async (demo, text) => {
+    const over = demo.ended.then(() => Promise.reject(new Error(`it ended: ${demo.err}`)))
+    while (!demo.out.includes(text)) await Promise.race([once(demo.child.stdout, 'data'), over])
+    over.catch(() => {})
+  }
+  const counts = ({ out }) => JSON.parse(out.trim().split('\n').at(-1))
+
+  it('Ctrl-C ends all of it and leaves nothing behind', async () => {
+    const demo = start([])
+    await shown(demo, 'Ctrl-C ends it')
+    demo.child.kill('SIGINT')
+    assert.deepEqual([...(await demo.ended)], [0, null], demo.err)
+    assert.deepEqual(Object.keys(counts(demo)), ['published', 'topics', 'writesConfirmed', 'errors'])
+    assert.deepEqual(fs.readdirSync(folder), [])
+  })
+
+  it('code 1 if nothing flowed: the line listens for 3 s before it asks', async () => {
+    const demo = start(['--seconds', '1'])
+    const [code] = await demo.ended
+    assert.equal(counts(demo).published, 0)
+    assert.equal(code, 1)
+    assert.deepEqual(fs.readdirSync(folder), [])
+  })
+
+  it('takes free ports if the usual ones are busy', async () => {
+    const one = start([])
+    await shown(one, 'Ctrl-C ends it')
+    const two = start([])
+    await shown(two, 'Ctrl-C ends it')
+    const ports = ({ out }) => [...out.matchAll(/:\/\/127\.0\.0\.1:(\d+)/g)].map(([, port]) => port)
+    assert.equal(ports(one).length, 3)
+    assert.deepEqual(
+      ports(one).filter(port => ports(two).includes(port)),
+      []
+    )
+    for (const { child } of [one, two]) child.kill('SIGINT')
+    assert.deepEqual([(await one.ended)[0], (await two.ended)[0]], [0, 0], one.err + two.err)
+  })
+
+  it('a wrong number of seconds is refused', async () => {
+    const demo = start(['--seconds', 'ten'])
+    assert.equal((await demo.ended)[0], 1)
+    assert.match(demo.err, /--seconds takes a number of seconds/)
+  })
+})

@@ -39,8 +39,9 @@ class Talk {
 
   #tellFixed(id) {
     const { station } = this.#settings
-    const cause = `station ${station} answers to the master ID ${id} only`
-    const remedy = `Set the master IDs of the PLC to ${id} alone.`
+    const shown = `0x${id.toString(16).toUpperCase()} (${id})`
+    const cause = `station ${station} answers to the master ID ${shown} only`
+    const remedy = `Set the master IDs of the PLC to ${shown} alone.`
     this.#lease.line.report({ event: 'fixedMasterId', station, id, cause, remedy })
   }
 

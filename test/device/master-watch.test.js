@@ -1,6 +1,7 @@
 'use strict'
 
 const assert = require('node:assert/strict')
+const { createMasterWatch } = require('../../lib/device/master-watch')
 const { bench } = require('./support')
 
 describe('NX PLC: a station that answers to one master ID only', () => {
@@ -27,7 +28,7 @@ describe('NX PLC: a station that answers to one master ID only', () => {
     const found = events.filter(({ event }) => event === 'fixedMasterId')
     assert.equal(found.length, 1)
     assert.deepEqual([found[0].station, found[0].id], [1, 0xe4])
-    assert.match(found[0].remedy, /to 228 alone/)
+    assert.match(found[0].remedy, /to 0xE4 \(228\) alone/)
     assert.ok(Number.isFinite(found[0].since))
   })
 
@@ -65,5 +66,78 @@ describe('NX PLC: a station that answers to one master ID only', () => {
       assert.equal(await read(), 'TIMEOUT')
     }
     assert.deepEqual(events, [])
+  })
+})
+
+describe('the series of proofs', () => {
+  const E2 = 0xe2
+  const E3 = 0xe3
+  const watched = () => {
+    const found = []
+    const watch = createMasterWatch({ memory: {}, found: id => found.push(id) })
+    const row = (id, code) => watch.note({ id, trial: false, code })
+    /** Silence to the row, then an answer to the ID of the last answer, if that is tried. */
+    const proof = () => {
+      row(E3, 'TIMEOUT')
+      const id = watch.trial()
+      if (id !== undefined) watch.note({ id, trial: true })
+    }
+    return { found, watch, row, proof }
+  }
+
+  it('needs three', () => {
+    const { found, row, proof } = watched()
+    row(E2)
+    proof()
+    proof()
+    assert.deepEqual(found, [])
+    proof()
+    assert.deepEqual(found, [E2])
+    proof()
+    assert.deepEqual(found, [E2], 'told once')
+  })
+
+  it('begins anew when another ID is answered', () => {
+    const { found, row, proof } = watched()
+    row(E2)
+    proof()
+    proof()
+    row(E3)
+    proof()
+    assert.deepEqual(found, [])
+  })
+
+  it('goes on when the same ID is answered in its turn', () => {
+    const { found, row, proof } = watched()
+    row(E2)
+    proof()
+    proof()
+    row(E2)
+    proof()
+    assert.deepEqual(found, [E2])
+  })
+
+  for (const code of ['TIMEOUT', 'CRC_ERROR']) {
+    it(`ends when the trial fails with ${code}: the ID rests until it is answered in its turn`, () => {
+      const { found, watch, row, proof } = watched()
+      row(E2)
+      proof()
+      proof()
+      row(E3, 'TIMEOUT')
+      watch.note({ id: watch.trial(), trial: true, code })
+      row(E3, 'TIMEOUT')
+      assert.equal(watch.trial(), undefined)
+      row(E2)
+      proof()
+      assert.deepEqual(found, [])
+    })
+  }
+
+  it('nothing is tried before the first answer, nor after one', () => {
+    const { watch, row } = watched()
+    row(E3, 'TIMEOUT')
+    assert.equal(watch.trial(), undefined)
+    row(E2)
+    assert.equal(watch.trial(), undefined)
   })
 })

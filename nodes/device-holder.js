@@ -18,7 +18,9 @@ const adviser = plc => {
 const openDevice = (plc, users) => {
   const lease = plc.lineNode.lease({ id: plc.id, name: plc.label })
   try {
-    const settings = deviceSettings(plc.settings, { name: plc.label, stations: plc.lineNode.plcs.stations() })
+    const { plcs, settings: wire } = plc.lineNode
+    const more = { name: plc.label, stations: plcs.stations(), gap: wire.gap }
+    const settings = deviceSettings(plc.settings, more)
     const { device, tagFault } = createDevice(lease, settings)
     if (tagFault && !plc.tagFault) plc.error(tagFault)
     plc.tagFault = tagFault

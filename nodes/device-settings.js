@@ -6,15 +6,18 @@ const LIMITS = ['readWords', 'writeWords', 'readBits', 'writeBits']
 /**
  * What `createNxPlc` gets of the configuration of a PLC.
  * @param {Record<string, any>} settings of nx-config
- * @param {{ name: string, stations: number[] }} more `stations`: all that are configured on the line
+ * @param {{ name: string, stations: number[], gap?: number }} more `stations`: all that are configured on the line; `gap`: of the
+ *   line, in ms; 0: what the protocol asks for
  * @returns {any}
  */
-const deviceSettings = (settings, { name, stations }) => ({
+const deviceSettings = (settings, { name, stations, gap = 0 }) => ({
   name,
   station: settings.station,
   steps: Number(settings.steps),
   timeout: settings.timeout,
   attempts: settings.attempts,
+  // the line keeps its own gap to the fraction; here it only takes the place of the protocol's
+  gap: gap > 0 ? Math.max(1, Math.floor(gap)) : 0,
   masterIds: settings.masterIds,
   soleMaster: settings.soleMaster,
   areas: settings.areas,

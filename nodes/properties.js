@@ -28,6 +28,7 @@ const PROPERTIES = {
     port: number(4001, 1, 65535),
     gap: number(0, 0, 10000, { whole: false }),
     echo: choice('auto', 'auto', 'on', 'off'),
+    flowControl: choice('none', 'none', 'rtscts', 'xonxoff'),
     dtr: choice('unchanged', 'unchanged', 'on', 'off'),
     rts: choice('unchanged', 'unchanged', 'on', 'off'),
     openDelay: number(0, 0, 60000),

@@ -28,7 +28,6 @@ const REASONS = {
 const CAUSES = {
   ...REASONS,
   TIMEOUT: 'noAnswer',
-  STATION_WAITS: 'noAnswer',
   INCOMPLETE: 'damaged',
   CRC_ERROR: 'damaged',
   BAD_ANSWER: 'damaged',

@@ -80,15 +80,21 @@ const itemToRead = (device, tags) => {
 
 const problem = error => ({ code: error.code, message: error.message, details: error.details })
 
+/** ms from the last frame out to the last one in: without the silence that the line keeps after it was opened. */
+const tookOf = (line, station) => {
+  const last = dir => line.trace().findLast(frame => frame.dir === dir && frame.station === station)?.t ?? 0
+  return Math.max(0, Math.round(last('in') - last('out')))
+}
+
 const readOnce = async ({ lease, where }, settings) => {
   const own = { ...settings, attempts: 1, access: 'read' }
-  const { device } = createDevice(lease, deviceSettings(own, { name: OWNER.name, stations: [] }))
-  const start = performance.now()
+  const { device } = createDevice(lease, deviceSettings(own, { name: OWNER.name, stations: [], gap: where.gap }))
   try {
     const item = itemToRead(device, settings.tags)
     const [result] = await device.read([item])
-    const ms = Math.round(performance.now() - start)
-    if (result.quality !== 'bad') return { ok: true, station: settings.station, ms, item, value: result.value }
+    const { station } = settings
+    if (result.quality !== 'bad')
+      return { ok: true, station, ms: tookOf(lease.line, station), item, value: result.value }
     const { code, text } = result
     const { path, host, port } = where
     const details = {

@@ -206,7 +206,7 @@ class NxPlc {
  * @param {2|4|'2'|'4'} [options.steps] default 2
  * @param {number} [options.timeout] ms to the first byte of the answer, default 3000
  * @param {number} [options.attempts] of a read, default 3; a write has one
- * @param {number} [options.gap] ms of silence before each frame, default 10
+ * @param {number} [options.gap] ms of silence before each frame; 0 or missing: 10, as the manual's program waits
  * @param {any} [options.masterIds] default $E2..$E9, see `masterIdList`
  * @param {number[]} [options.stations] numbers of the line's other stations, which no master ID may have
  * @param {boolean} [options.soleMaster] the line has no other master: polls may be repeated by an RR alone

@@ -66,6 +66,24 @@ describe('NX PLC: reading', () => {
     assert.deepEqual(b.queries, [{ ask: 'readWords', base: 0xc0, count: 128 }])
   })
 
+  it('the gap before a query is 10 ms, or what is set', async () => {
+    for (const [gap, silence] of [
+      [undefined, 10],
+      [0, 10],
+      [3, 3],
+      [25, 25]
+    ]) {
+      start({ plc: { gap } })
+      await read(['M0'])
+      const from = b.clock.now()
+      await read(['M0'])
+      const wire = ((9 + 8) * 10) / 38.4 // query and answer of one word
+      const took = b.clock.now() - from - wire - 2 // the stations' turnaround
+      assert.ok(Math.abs(took - silence) < 0.1, `${gap}: ${took}`)
+      if (gap !== 25) await b.close()
+    }
+  })
+
   it('a float on the border of two frames is not torn', async () => {
     start()
     b.station.set('W127', 1.25, 'float32')

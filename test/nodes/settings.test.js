@@ -1,0 +1,26 @@
+'use strict'
+const assert = require('node:assert/strict')
+const { lineSettings } = require('../../lib')
+const { deviceSettings } = require('../../nodes/device-settings')
+const { poolSettings } = require('../../nodes/line-settings')
+const { readSettings } = require('../../nodes/settings')
+
+describe('settings on their way to the library', () => {
+  const line = config => readSettings('plc-line', { path: '/dev/a', ...config })
+  const device = gap =>
+    deviceSettings(readSettings('nx-config', { line: 'l', station: '1' }), { name: 'a', stations: [], gap })
+
+  it('the gap of a line takes the place of the protocol’s, down to 1 ms', () => {
+    assert.deepEqual(
+      ['0', '0.5', '3.5', '20'].map(gap => device(line({ gap }).gap).gap),
+      [0, 1, 3, 20]
+    )
+  })
+
+  it('flow control, signals and format reach the port', () => {
+    const given = { flowControl: 'rtscts', dtr: 'off', rts: 'on', dataBits: '7', parity: 'even', stopBits: '2' }
+    const { flowControl, dtr, rts, dataBits, parity, stopBits } = lineSettings(poolSettings(line(given)))
+    assert.deepEqual([flowControl, dtr, rts, dataBits, parity, stopBits], ['rtscts', 'off', 'on', 7, 'even', 2])
+    assert.equal(lineSettings(poolSettings(line({}))).flowControl, 'none')
+  })
+})

@@ -132,7 +132,7 @@ class Line extends EventEmitter {
     return this.#quarantine.memory(station)
   }
 
-  /** Tells all who listen of something that a device noticed: `{ event, station, cause, remedy, … }`. */
+  /** Tells all who listen of something that was noticed: `{ event, station, cause, remedy, … }`. */
   report(event) {
     this.emit('event', { since: this.#clock.wall(), ...event })
   }
@@ -283,14 +283,14 @@ class Line extends EventEmitter {
     this.#recorder.late(station, frame)
     const ms = Math.round(lateness)
     const remedy = `Station ${station} answers ${ms} ms after its ${timeout} ms timeout: raise the timeout.`
-    this.emit('event', { event: 'late', station, lateness: ms, timeout, bound, since: this.#clock.wall(), remedy })
+    this.report({ event: 'late', station, lateness: ms, timeout, bound, remedy })
   }
 
   /** Nothing is sent into a flood; the first silence ends it. */
   #jam(error) {
     this.#fall(error, 'jammed')
     const { message, remedy } = error
-    this.emit('event', { event: 'jammed', station: null, since: this.#clock.wall(), cause: message, remedy })
+    this.report({ event: 'jammed', station: null, cause: message, remedy })
     this.#awaitCalm()
   }
 

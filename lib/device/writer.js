@@ -6,6 +6,7 @@ const { encodeValue } = require('../tag/value')
 const { createGuard } = require('./guard')
 const { outcomeOf, unsent, wordFor } = require('./outcome')
 const { asPlcError } = require('./talk')
+const { verifyWritten } = require('./verify')
 
 /**
  * Writes: guarded before anything is sent, in as few frames as possible, never repeated. The first frame that is not
@@ -82,7 +83,7 @@ class Writer {
   #outcome(entries, options) {
     try {
       const prepared = this.#prepare(entries, options)
-      return options.coalesce ? this.#latest(prepared, options) : this.#carryOut({ prepared, begun: false }, options)
+      return options.coalesce ? this.#latest(prepared, options) : this.#carryOut({ prepared }, options)
     } catch (error) {
       const given = Array.isArray(entries) ? entries.slice(0, MOST_ENTRIES) : []
       return unsent(
@@ -129,7 +130,7 @@ class Writer {
   }
 
   #firstOf(key, prepared, options) {
-    const job = { prepared, begun: false, settle: /** @type {(outcome: any) => void} */ (() => {}), begin: () => {} }
+    const job = { prepared, settle: /** @type {(outcome: any) => void} */ (() => {}), begin: () => {} }
     job.begin = () => void (this.#waiting.get(key) === job && this.#waiting.delete(key))
     this.#waiting.set(key, job)
     const promise = new Promise(resolve => (job.settle = resolve))
@@ -160,7 +161,7 @@ class Writer {
     requests.forEach((request, index) => {
       if (done[index]) for (const point of request.points) fates[point] = done[index]
     })
-    if (verify) await this.#verify(points, fates)
+    if (verify) await verifyWritten({ reader: this.#reader, station: this.#settings.station, points, fates })
     return { ...outcomeOf(entries, fates), attempts }
   }
 
@@ -188,67 +189,6 @@ class Writer {
     if (code === 'WRITE_UNKNOWN' || code.startsWith('PLC_') || details.sent !== true) return error
     return new PlcError('WRITE_UNKNOWN', { station: this.#settings.station, item, reason: code, cause: error })
   }
-
-  /** Reads back what was confirmed or is unknown; what is read decides. */
-  async #verify(points, fates) {
-    const last = lastWritten(points, fates)
-    if (last.length === 0) return
-    const readings = await this.#readBack(last.map(index => points[index]))
-    const { station } = this.#settings
-    last.forEach((index, at) => {
-      fates[index] = judge(fates[index], { ...points[index], station }, readings[at])
-    })
-  }
-
-  /** @returns {Promise<any[]>} one reading per point, also where they cannot be asked for: a write that went out has an outcome */
-  async #readBack(points) {
-    try {
-      return await this.#reader.read(points, { priority: PRIORITY.ASK, fresh: true })
-    } catch (caught) {
-      const error = asPlcError(caught, this.#settings.station)
-      return points.map(() => ({ error }))
-    }
-  }
-}
-
-/** Of the points that went out, those that no later one overwrites. */
-const lastWritten = (points, fates) => {
-  const words = new Map()
-  const bits = new Map()
-  const last = []
-  for (let index = points.length - 1; index >= 0; index--) {
-    const { outcome } = fates[index]
-    if (outcome !== 'confirmed' && outcome !== 'unknown') continue
-    const { kind, address, count } = points[index]
-    const places = Array.from({ length: count }, (_, at) => address + at)
-    const free = place => (kind === 'word' ? !words.has(place) && !bits.has(place) : !words.has(place >> 4))
-    const clear = places.every(free) && (kind === 'word' || !bits.has(`b${address}`))
-    for (const place of places) {
-      if (kind === 'word') words.set(place, index)
-      else bits.set(place >> 4, index).set(`b${place}`, index)
-    }
-    if (clear) last.unshift(index)
-  }
-  return last
-}
-
-const judge = (fate, { values, text, station }, reading) => {
-  if ('error' in reading) {
-    const reason = `it could not be read back: ${reading.error.code}`
-    const details = { station, item: text, reason, cause: reading.error }
-    return { outcome: 'unknown', error: new PlcError('WRITE_UNKNOWN', details) }
-  }
-  if (values.every((value, index) => value === reading.raw[index])) return { outcome: 'confirmed' }
-  const shown = raw =>
-    raw.map(value => (typeof value === 'boolean' ? value : `${value.toString(16).toUpperCase()}h`)).join(' ')
-  const error = new PlcError('VERIFY_FAILED', {
-    item: text,
-    got: shown(reading.raw),
-    expected: shown(values),
-    cause: fate.error
-  })
-  // without an acknowledgement nobody knows whether the PLC's program took it and set it back: a command bit may have been carried out
-  return { outcome: fate.outcome === 'unknown' ? 'unknown' : 'failed', error }
 }
 
 module.exports = { Writer }

@@ -2,16 +2,13 @@
 
 const { PlcError } = require('../error')
 const { EMPTY, Receiver } = require('./receiver')
+const { Silence } = require('./silence')
 
 /** A timer that fires this late (ms) tells of a busy process, not of a silent station: then the bytes get time to come in. */
 const LAG = 10
 const MOST_GRACE = 250
 
 const TOLERANCE = 0.001
-
-/** A gap whose end is seen this late (ms) may hide bytes that nobody has read yet: they get a moment to come in. */
-const LATE_GAP = 5
-const BREATH = 5
 
 /**
  * One step on the wire at a time: gap, sending, answer. Synchronous: `done(error, answer)` is called from a timer or from
@@ -24,6 +21,7 @@ class Exchange {
   #echo
   #settings
   #rx = new Receiver()
+  #silence
   /** @type {any} */
   #job = null
   /** @type {any} */
@@ -41,6 +39,7 @@ class Exchange {
     this.#times = times
     this.#echo = echo
     this.#link = link
+    this.#silence = new Silence({ clock, quietSince: () => this.quietSince })
   }
 
   get busy() {
@@ -65,25 +64,20 @@ class Exchange {
    */
   start(step, { gap, station, sent, done }) {
     const now = this.#clock.now()
-    this.#job = { step, gap, station, sent, done, phase: 'gap', from: now, due: 0, written: false, ours: 0, bytes: 0 }
-    this.#whenSilent()
+    this.#job = { step, station, sent, done, phase: 'gap', from: now, due: 0, written: false, ours: 0, bytes: 0 }
+    this.#silence.wait(
+      gap,
+      () => this.#send(),
+      at => this.#isJammed(at)
+    )
   }
 
-  #whenSilent = () => {
-    this.#timer = null
-    const job = this.#job
-    const now = this.#clock.now()
-    const free = this.quietSince + job.gap
-    // once: a process that is always late must send all the same
-    const overslept = !job.rested && now - Math.max(free, job.wokenAt ?? now) >= LATE_GAP
-    if (now >= free - TOLERANCE && !overslept) return this.#send()
-    if (job.bytes > 0 && now - job.from >= this.#settings.jamTime) {
-      return this.#settle(new PlcError('LINE_JAMMED', { line: this.#link.name, bytes: job.bytes, sent: false }))
-    }
-    if (overslept) job.rested = true
-    const wait = overslept ? BREATH : free - now
-    job.wokenAt = now + wait
-    this.#timer = this.#clock.setTimer(this.#whenSilent, wait)
+  /** Nothing is sent into a flood: the step ends, if bytes came all the time. */
+  #isJammed(now) {
+    const { bytes, from } = this.#job
+    if (bytes === 0 || now - from < this.#settings.jamTime) return false
+    this.#settle(new PlcError('LINE_JAMMED', { line: this.#link.name, bytes, sent: false }))
+    return true
   }
 
   #send() {
@@ -259,6 +253,7 @@ class Exchange {
   }
 
   #idle() {
+    this.#silence.stop()
     this.#clock.clearTimer(this.#timer)
     this.#timer = null
     this.#job = null

@@ -2,14 +2,16 @@
 
 const { EventEmitter } = require('node:events')
 const { PlcError } = require('../error')
+const { Condition } = require('./condition')
 const { Connection } = require('./connection')
 const { Driver } = require('./driver')
 const { Echo } = require('./echo')
 const { Exchange } = require('./exchange')
 const { Quarantine } = require('./quarantine')
 const { Recorder } = require('./recorder')
-const { copyOf, isLineFailure } = require('./run')
+const { isLineFailure } = require('./run')
 const { Scheduler } = require('./scheduler')
+const { Silence } = require('./silence')
 const { lineTimes } = require('./timing')
 
 /** A frame that is being sent is never cut; nor is closing held up longer than this, ms. */
@@ -33,14 +35,10 @@ class Line extends EventEmitter {
   #driver
   #connection
   #recorder
-  /** @type {any} */
-  #state = 'closed'
-  /** @type {any} */
-  #reason = null
+  #condition
+  #calm
   #grace = null
-  #calming = null
   #silent = 0
-  #closing = false
 
   /**
    * @param {{ name: string, settings: any, clock: any, make: () => any, random: () => number, claims: any,
@@ -61,6 +59,8 @@ class Line extends EventEmitter {
     this.#scheduler = new Scheduler({ clock, settings, readyAt, awake: () => this.#driver.pump() })
     this.#echo = new Echo(settings.echo)
     this.#exchange = new Exchange({ clock, settings, times: this.#times, echo: this.#echo, link: this.#link() })
+    this.#calm = new Silence({ clock, quietSince: () => this.#exchange.quietSince })
+    this.#condition = new Condition({ line: name, changed: (state, reason) => this.emit('state', state, reason) })
     this.#driver = this.#makeDriver()
     const told = {
       opened: () => this.#opened(),
@@ -90,7 +90,7 @@ class Line extends EventEmitter {
     }
     const least = { gap: this.#times.gap, latenessBound: this.#settings.latenessBound }
     return new Driver(parts, least, {
-      refusal: () => (this.#state === 'open' && !this.#closing ? null : this.#refusal()),
+      refusal: () => this.#condition.refusal(),
       answered: () => this.#answered(),
       troubled: error => this.#troubled(error),
       stray: bytes => this.#unclaimed('stray', bytes)
@@ -99,12 +99,12 @@ class Line extends EventEmitter {
 
   /** @returns {'closed'|'opening'|'open'|'waiting'|'jammed'} */
   get state() {
-    return this.#state
+    return this.#condition.state
   }
 
   /** Why it is waiting or jammed: a PlcError, or null. */
   get reason() {
-    return this.#reason
+    return this.#condition.reason
   }
 
   /** `unknown`, `present` or `absent`: whether the adapter hears what it sends. */
@@ -146,8 +146,8 @@ class Line extends EventEmitter {
    * @returns {Promise<any>}
    */
   run(lease, make, options) {
-    const refusal = this.#closing || this.#state !== 'opening' ? this.#refusal() : null
-    if (refusal) return Promise.reject(refusal)
+    const rejection = this.#condition.rejection()
+    if (rejection) return Promise.reject(rejection)
     const shared = this.#scheduler.shared(options.share)
     if (shared) {
       this.#recorder.stats.count('overruns', options.station)
@@ -164,20 +164,9 @@ class Line extends EventEmitter {
     return promise
   }
 
-  /** Why nothing can be sent now: a PlcError, or null. */
-  #refusal() {
-    if (this.#closing || this.#state === 'closed') return new PlcError('LINE_CLOSED', { line: this.name, sent: false })
-    if (this.#reason) return copyOf(this.#reason, { sent: false })
-    return this.#state === 'opening' ? this.#slow() : null
-  }
-
-  #slow() {
-    return new PlcError('LINE_DOWN', { line: this.name, reason: 'it is still being opened', sent: false })
-  }
-
   /** A lease was released: what only it waits for ends. */
   drop(lease) {
-    this.#driver.drop(lease, new PlcError('LINE_CLOSED', { line: this.name }))
+    this.#driver.drop(lease, this.#condition.closed())
   }
 
   #answered() {
@@ -194,53 +183,43 @@ class Line extends EventEmitter {
   // --- opening and closing
 
   open() {
-    this.#become('opening', null)
-    this.#grace = this.#clock.setTimer(() => this.#fall(this.#slow()), this.#settings.openGrace)
+    this.#condition.become('opening')
+    this.#grace = this.#clock.setTimer(() => this.#fall(this.#condition.slow()), this.#settings.openGrace)
   }
 
   /** The port is free: the transport may open it. */
   connect() {
-    if (!this.#closing) this.#connection.start()
-  }
-
-  #become(state, reason) {
-    if (state === this.#state && reason?.code === this.#reason?.code) return
-    this.#state = state
-    this.#reason = reason
-    this.emit('state', state, reason)
+    if (!this.#condition.closing) this.#connection.start()
   }
 
   #opened() {
     this.#stopTimers()
     this.#echo.reset()
     this.#quarantine.opened()
-    this.#become('open', null)
+    this.#condition.become('open')
     this.#driver.pump()
   }
 
   #stopTimers() {
     this.#clock.clearTimer(this.#grace)
-    this.#clock.clearTimer(this.#calming)
+    this.#calm.stop()
   }
 
-  /** Nothing can be sent for this reason: all that waits ends, so that nothing hangs. */
+  /**
+   * Nothing can be sent for this reason: all that waits ends, so that nothing hangs.
+   * @param {any} reason @param {'waiting'|'jammed'} [state]
+   */
   #fall(reason, state = 'waiting') {
     this.#stopTimers()
-    this.#become(state, reason)
+    this.#condition.become(state, reason)
     this.#driver.breakOff(reason)
     this.#scheduler.rejectAll(reason)
   }
 
   #down(error, wasOpen) {
-    if (this.#closing) return
+    if (this.#condition.closing) return
     if (wasOpen) this.#recorder.stats.count('reconnects')
-    this.#fall(this.#asReason(error))
-  }
-
-  #asReason(error) {
-    if (error instanceof PlcError) return error
-    const reason = error?.message ?? 'the connection was closed'
-    return new PlcError('LINE_DOWN', { line: this.name, reason, cause: error })
+    this.#fall(this.#condition.asReason(error))
   }
 
   /** A port that takes no bytes is closed: else they would go out at some later time. */
@@ -251,8 +230,8 @@ class Line extends EventEmitter {
 
   /** Ends all that waits, lets a frame on the wire end, closes the port. @param {() => void} done */
   close(done) {
-    this.#closing = true
-    const reason = new PlcError('LINE_CLOSED', { line: this.name })
+    this.#condition.closing = true
+    const reason = this.#condition.closed()
     const sending = Math.min(MOST_SENDING, this.#exchange.sendEnd - this.#clock.now())
     this.#stopTimers()
     this.#scheduler.sleep()
@@ -260,7 +239,7 @@ class Line extends EventEmitter {
     this.#driver.stop(reason)
     const shut = () =>
       this.#connection.stop(() => {
-        this.#become('closed', null)
+        this.#condition.become('closed')
         done()
       })
     if (sending > 0 && this.#connection.isOpen) this.#clock.setTimer(shut, sending)
@@ -276,7 +255,7 @@ class Line extends EventEmitter {
 
   #unclaimed(note, bytes) {
     this.#recorder.unclaimed(note, bytes)
-    if (this.#state === 'open') this.#quarantine.offer(bytes)
+    if (this.#condition.state === 'open') this.#quarantine.offer(bytes)
   }
 
   #late({ station, lateness, timeout, bound }, frame) {
@@ -291,19 +270,10 @@ class Line extends EventEmitter {
     this.#fall(error, 'jammed')
     const { message, remedy } = error
     this.report({ event: 'jammed', station: null, cause: message, remedy })
-    this.#awaitCalm()
-  }
-
-  #awaitCalm() {
-    if (this.#state !== 'jammed') return
-    const wait = Math.max(LEAST_CALM, this.#times.gap)
-    const rest = this.#exchange.quietSince + wait - this.#clock.now()
-    if (rest > 0) {
-      this.#calming = this.#clock.setTimer(() => this.#awaitCalm(), rest)
-      return
-    }
-    this.#become('open', null)
-    this.#driver.pump()
+    this.#calm.wait(Math.max(LEAST_CALM, this.#times.gap), () => {
+      this.#condition.become('open')
+      this.#driver.pump()
+    })
   }
 }
 

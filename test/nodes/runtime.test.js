@@ -1,5 +1,6 @@
 'use strict'
 const assert = require('node:assert/strict')
+const os = require('node:os')
 const { createRequire } = require('node:module')
 const { startNodeRed } = require('../support/node-red')
 const { openWire } = require('./bench')
@@ -174,7 +175,7 @@ describe('nodes in a real Node-RED', function () {
     ['any file as port', { plc: plc({ line: 'new' }), line: { id: 'new', transport: 'serial', path: '/etc/passwd' } }],
     [
       'a path with dots',
-      { plc: plc({ line: 'new' }), line: { id: 'new', transport: 'serial', path: '/dev/../tmp/x' } }
+      { plc: plc({ line: 'new' }), line: { id: 'new', transport: 'serial', path: '/dev/../etc/passwd' } }
     ],
     ['an absurd id', { plc: { ...plc(), id: '__proto__' }, line: { id: 'constructor', transport: 'serial' } }],
     ['a station of masters', { plc: plc({ station: 200 }), line: tcp() }],
@@ -185,7 +186,7 @@ describe('nodes in a real Node-RED', function () {
       assert.equal(status, 400)
       assert.equal(json.ok, false)
       assert.match(json.error.code, /^[A-Z_]+$/)
-      assert.doesNotMatch(json.error.message, /root/)
+      for (const secret of ['root:', os.homedir()]) assert.ok(!json.error.message.includes(secret), json.error.message)
     })
   }
 })

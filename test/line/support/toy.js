@@ -54,7 +54,7 @@ function* askAgain(station, { attempts = 3, ...options } = {}) {
 
 function* put(station, value, { timeout = 200 } = {}) {
   const send = write(station, value)
-  yield { send, match: copyOf(send), timeout, answerMayEqualQuery: true }
+  yield { send, match: copyOf(send), timeout }
   return 'confirmed'
 }
 

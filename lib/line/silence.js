@@ -1,0 +1,49 @@
+'use strict'
+
+const TOLERANCE = 0.001
+
+/** A silence whose end is seen this late (ms) may hide bytes that nobody has read yet: they get a moment to come in. */
+const LATE = 5
+const BREATH = 5
+
+/** Waits until the wire has been silent for a while. One wait at a time. */
+class Silence {
+  #clock
+  #quietSince
+  #timer = null
+
+  /** @param {{ clock: any, quietSince: () => number }} options quietSince: when the last byte came or went, ms of the clock */
+  constructor({ clock, quietSince }) {
+    this.#clock = clock
+    this.#quietSince = quietSince
+  }
+
+  /**
+   * @param {number} ms of silence
+   * @param {() => void} done at once, if it is silent already
+   * @param {(now: number) => boolean} [givenUp] asked whenever it is not silent yet; true ends the wait
+   */
+  wait(ms, done, givenUp = () => false) {
+    this.stop()
+    this.#look({ ms, done, givenUp, wokenAt: this.#clock.now(), rested: false })
+  }
+
+  #look(wait) {
+    const now = this.#clock.now()
+    const free = this.#quietSince() + wait.ms
+    // once: a process that is always late must go on all the same
+    const overslept = !wait.rested && now - Math.max(free, wait.wokenAt) >= LATE
+    if (now >= free - TOLERANCE && !overslept) return wait.done()
+    if (wait.givenUp(now)) return
+    const rest = overslept ? BREATH : free - now
+    const next = { ...wait, rested: wait.rested || overslept, wokenAt: now + rest }
+    this.#timer = this.#clock.setTimer(() => this.#look(next), rest)
+  }
+
+  stop() {
+    this.#clock.clearTimer(this.#timer)
+    this.#timer = null
+  }
+}
+
+module.exports = { Silence }

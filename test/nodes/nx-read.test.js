@@ -160,6 +160,13 @@ describe('nx-read', () => {
     assert.equal(msg.payload.value, null)
   })
 
+  /** At least this many polls begin and end from now on. */
+  const polls = async (count, { counts } = wire.plcs[0]) => {
+    // one may be under way, with values of before
+    const enough = counts.executed + count + 1
+    await until(() => counts.executed >= enough, `${count} polls`)
+  }
+
   it('polls at its interval; report changed sends only what changed, beyond the deadband', async () => {
     const { out } = await load([
       lineNode(wire),
@@ -170,7 +177,7 @@ describe('nx-read', () => {
     wire.plcs[0].set('M0', 9)
     await until(() => out.length === 2)
     wire.plcs[0].set('M5', 255)
-    await tick(50)
+    await polls(2)
     wire.plcs[0].set('M5', 300)
     await until(() => out.length === 3)
     assert.deepEqual(
@@ -186,7 +193,7 @@ describe('nx-read', () => {
       reader({ items: ['M0', 'M1'], interval: '20', report: 'allOnChange' })
     ])
     await until(() => out.length === 1)
-    await tick(50)
+    await polls(2)
     assert.equal(out.length, 1)
     wire.plcs[0].set('M1', 1)
     await until(() => out.length === 2)

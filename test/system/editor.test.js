@@ -163,6 +163,17 @@ for (const { name, red, node } of RUNTIMES) {
       await closeDialog()
     })
 
+    it('a value that is read is seen in the debug sidebar', async () => {
+      await deploy()
+      await page.evaluate(() => globalThis.RED.sidebar.show('debug'))
+      await page.locator(`${byId(await nodeOf('inject', 'ask now'))} .red-ui-flow-node-button-button`).click()
+      const seen = page.locator('.red-ui-debug-msg', { hasText: 'temperature' }).last()
+      await seen.waitFor()
+      // { temperature: 21.5, M0_M3: array[4] }
+      assert.match(await seen.textContent(), /temperature: -?\d/)
+      await picture('value')
+    })
+
     it('nothing failed in the page meanwhile', () => assert.deepEqual(problems, []))
   })
 }

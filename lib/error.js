@@ -88,6 +88,47 @@ const CODES = Object.freeze({
     'station {station} answers "no service"',
     'This CPU does not offer the function. Try the other number of steps.'
   ],
+  MODBUS_ILLEGAL_FUNCTION: [
+    'station {station} answers exception 01: illegal function ({function})',
+    'The device does not have this function. Choose the other write function, or another kind of address.'
+  ],
+  MODBUS_ILLEGAL_ADDRESS: [
+    'station {station} answers exception 02: it does not have {address}',
+    'Correct the address or the address mode (1-base, 0-base); a device may also refuse a range that is too long.'
+  ],
+  MODBUS_ILLEGAL_VALUE: [
+    'station {station} answers exception 03: illegal data value',
+    'Send a value that the device accepts, or lower the counts per request in the configuration of the regulator.'
+  ],
+  MODBUS_DEVICE_FAILURE: [
+    'station {station} answers exception 04: slave device failure',
+    'The device failed while it carried out the request. Look at its display.'
+  ],
+  MODBUS_ACKNOWLEDGE: [
+    'station {station} answers exception 05: accepted, but it takes a long time',
+    'Read the result later.'
+  ],
+  MODBUS_BUSY: ['station {station} answers exception 06: slave device busy', 'Ask again later, or poll less often.'],
+  MODBUS_NEGATIVE_ACKNOWLEDGE: [
+    'station {station} answers exception 07: it cannot carry this out',
+    'Look at the mode of the device: it may be in local or program operation.'
+  ],
+  MODBUS_MEMORY_PARITY: [
+    'station {station} answers exception 08: memory parity error',
+    'The device found its memory damaged. Have it serviced.'
+  ],
+  MODBUS_GATEWAY_PATH: [
+    'station {station} answers exception 0A: the gateway has no path to it',
+    'Correct the configuration of the gateway.'
+  ],
+  MODBUS_GATEWAY_TARGET: [
+    'station {station} answers exception 0B: the device behind the gateway does not answer',
+    'Check power, cable and station number behind the gateway.'
+  ],
+  MODBUS_EXCEPTION: [
+    'station {station} answers exception {exception}, which the protocol does not name',
+    'Look it up in the manual of the device.'
+  ],
   // --- the conversation
   TIMEOUT: [
     'station {station} did not answer within {timeout} ms',
@@ -159,6 +200,18 @@ const CODES = Object.freeze({
   SUPERSEDED: [
     '{item} was not written: a newer value came while this one waited',
     'Nothing to do; switch "only the latest" off in the node to write every value.'
+  ],
+  MIXED_LINE: [
+    '{owner} and {other} cannot share {line}: {reason}',
+    'Change one of the numbers, or give one of them a line of its own.'
+  ],
+  BROADCAST_REFUSED: [
+    '{what} cannot be broadcast: {reason}',
+    'Allow broadcasts in the configuration, or address one station.'
+  ],
+  BROADCAST_UNCONFIRMED: [
+    '{item} was sent to all stations of {line}; no station acknowledges a broadcast',
+    'Read the stations one by one if you must know.'
   ],
   DUPLICATE_STATION: [
     '{owner} and {other} are both station {station} of {line}',

@@ -18,7 +18,7 @@ const LEVELS = {
   plan: { pure: true, levels: ['error'] },
   output: { pure: true, levels: ['error', 'tag'] },
   line: { node: true, levels: ['error'], outside: ['serialport'] },
-  device: { levels: ['error', 'codec', 'tag', 'plan', 'line'] },
+  device: { levels: ['error', 'codec', 'tag', 'plan', 'line'], outside: ['modbus-serial'] },
   sim: { node: true, levels: ['error', 'codec'], outside: ['@lydell/node-pty/requireBinary'] },
   index: { levels: ['error', 'codec', 'tag', 'plan', 'output', 'line', 'device'] },
   nodes: { node: true, levels: ['index', 'sim/index'] }

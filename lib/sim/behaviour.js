@@ -34,6 +34,7 @@ const float = Buffer.alloc(4)
 const TYPES = {
   uint16: value => [modulo(value, 0x10000)],
   int16: value => [modulo(value, 0x10000)],
+  uint32: value => TYPES.int32(value),
   int32: value => [modulo(value, 0x10000), modulo(floor(Math.round(value) / 0x10000), 0x10000)],
   float32(value) {
     float.writeFloatLE(value)
@@ -43,6 +44,7 @@ const TYPES = {
 const FROM = {
   uint16: ([word]) => word,
   int16: ([word]) => (word << 16) >> 16,
+  uint32: ([low, high]) => high * 0x10000 + low,
   int32: ([low, high]) => (high << 16) | low,
   float32([low, high]) {
     float.writeUInt16LE(low, 0)
@@ -53,7 +55,7 @@ const FROM = {
 
 /**
  * Words of a number as a PLC holds it: low word first.
- * @param {string} type uint16, int16, int32 or float32
+ * @param {string} type uint16, int16, uint32, int32 or float32
  * @param {number} value
  * @returns {number[]} one or two words
  * @throws {PlcError} BAD_TYPE
@@ -82,7 +84,7 @@ function typeOf(table, type) {
 
 /**
  * One live value.
- * @param {{ kind: string | ((time: number, address: number) => number), every?: number, [setting: string]: any }} row
+ * @param {{ kind: string | ((time: number, address: number) => number), every?: number, pure?: boolean, [setting: string]: any }} row
  * @param {{ address: number, target?: () => number }} place absolute word (or bit) address; what `follows` follows
  * @returns {{ at: (time: number) => number, every: number, pure: boolean }} `at` gives the value at a moment (ms)
  * @throws {PlcError} BAD_SETTING unknown kind
@@ -90,7 +92,11 @@ function typeOf(table, type) {
 function createBehaviour(row, { address, target = () => 0 }) {
   const { kind } = row
   const every = row.every ?? 10
-  if (typeof kind === 'function') return { at: t => kind(floor(t / every) * every, address), every, pure: true }
+  if (typeof kind === 'function') {
+    // a function that keeps a state of its own (heating.js) says so: it is asked for the present only
+    if (row.pure === false) return { at: kind, every, pure: false }
+    return { at: t => kind(floor(t / every) * every, address), every, pure: true }
+  }
   if (!Object.hasOwn(KINDS, kind)) {
     const reason = `known are ${Object.keys(KINDS).join(', ')} and functions`
     throw new PlcError('BAD_SETTING', { setting: 'behaviour', value: kind, reason })

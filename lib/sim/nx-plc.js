@@ -6,7 +6,7 @@ const { parseAddress } = require('../codec/nx/address')
 const { limitsOf } = require('../codec/nx/limits')
 const { answerInfoLength, decodeQuery } = require('../codec/nx/query')
 const { createMemory } = require('./nx-memory')
-const { createReceiver } = require('./nx-receiver')
+const { createNxReceiver } = require('./nx-receiver')
 const { PlcError } = require('../error')
 
 const GLOBAL_STATION = 255
@@ -36,7 +36,7 @@ const ERROR = { FUNCTION: 1, RANGE: 2, STRUCTURE: 3, NOT_PERFORMED: 4, TOO_LONG:
  */
 function createNxPlc(settings) {
   const plc = prepare(settings)
-  const receiver = createReceiver({ gap: plc.gap, isMine: to => isMine(plc, to), counts: plc.counts })
+  const receiver = createNxReceiver({ gap: plc.gap, isMine: to => isMine(plc, to), counts: plc.counts })
   const answer = createAnswerer(plc)
   return {
     station: plc.station,

@@ -2,30 +2,30 @@
 const { createDevice, deviceSettings } = require('./device-settings')
 
 /** What the line or the device advises, once for each kind: it stands in the log and in the debug sidebar. */
-const adviser = plc => {
+const adviser = deviceNode => {
   const told = new Set()
   return ({ event, station, cause, remedy }) => {
-    if ((station !== null && station !== plc.station) || told.has(event)) return
+    if ((station !== null && station !== deviceNode.station) || told.has(event)) return
     told.add(event)
-    plc.warn([cause, remedy].filter(Boolean).join('. '))
+    deviceNode.warn([cause, remedy].filter(Boolean).join('. '))
   }
 }
 
 /**
- * @param {any} plc the config node
+ * @param {any} deviceNode the config node
  * @param {Map<any, (line: { state: string, reason: any }) => void>} users who is told of the line
  */
-const openDevice = (plc, users) => {
-  const lease = plc.lineNode.lease({ id: plc.id, name: plc.label })
+const openDevice = (deviceNode, users) => {
+  const lease = deviceNode.lineNode.lease({ id: deviceNode.id, name: deviceNode.label })
   try {
-    const { plcs, settings: wire } = plc.lineNode
-    const more = { name: plc.label, stations: plcs.stations(), gap: wire.gap }
-    const settings = deviceSettings(plc.settings, more)
+    const { plcs, settings: wire } = deviceNode.lineNode
+    const more = { name: deviceNode.label, stations: plcs.stations(), gap: wire.gap }
+    const settings = deviceSettings(deviceNode.settings, more)
     const { device, tagFault } = createDevice(lease, settings)
-    if (tagFault && !plc.tagFault) plc.error(tagFault)
-    plc.tagFault = tagFault
+    if (tagFault && !deviceNode.tagFault) deviceNode.error(tagFault)
+    deviceNode.tagFault = tagFault
     lease.on('state', (state, reason) => users.forEach(tell => tell({ state, reason })))
-    lease.on('event', adviser(plc))
+    lease.on('event', adviser(deviceNode))
     return { lease, device }
   } catch (error) {
     lease.release()
@@ -34,12 +34,12 @@ const openDevice = (plc, users) => {
 }
 
 /**
- * The device of a PLC's configuration: made for its first user, given back when a deploy has left it without one. In the middle of a
+ * The device of a configuration: made for its first user, given back when a deploy has left it without one. In the middle of a
  * deploy a changed user goes and comes back: the port stays open for it.
- * @param {any} plc the config node
+ * @param {any} deviceNode the config node
  * @param {{ on: Function, off: Function }} events of the runtime
  */
-const deviceHolder = (plc, events) => {
+const deviceHolder = (deviceNode, events) => {
   const users = new Map()
   /** @type {{ lease: any, device: any } | null} */
   let open = null
@@ -67,10 +67,10 @@ const deviceHolder = (plc, events) => {
      * @throws {Error} why the configuration cannot be used
      */
     attach(node, tell) {
-      plc.users[node.id] = node
-      if (plc.lineNode) plc.lineNode.users[node.id] = node
-      if (plc.fault) throw plc.fault
-      open ??= openDevice(plc, users)
+      deviceNode.users[node.id] = node
+      if (deviceNode.lineNode) deviceNode.lineNode.users[node.id] = node
+      if (deviceNode.fault) throw deviceNode.fault
+      open ??= openDevice(deviceNode, users)
       users.set(node, tell)
       const { state, reason } = open.lease.line
       tell({ state, reason })
@@ -79,8 +79,8 @@ const deviceHolder = (plc, events) => {
     /** @param {any} node that attached */
     detach(node) {
       users.delete(node)
-      if (plc.users[node.id] === node) delete plc.users[node.id]
-      if (plc.lineNode?.users[node.id] === node) delete plc.lineNode.users[node.id]
+      if (deviceNode.users[node.id] === node) delete deviceNode.users[node.id]
+      if (deviceNode.lineNode?.users[node.id] === node) delete deviceNode.lineNode.users[node.id]
     },
     close() {
       events.off('flows:started', settle)

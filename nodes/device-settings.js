@@ -1,16 +1,11 @@
 'use strict'
-const { createNxPlc, nxNotation } = require('../lib/index.js')
+const lib = require('../lib/index.js')
+const { readSettings } = require('./settings')
 
 const LIMITS = ['readWords', 'writeWords', 'readBits', 'writeBits']
 
-/**
- * What `createNxPlc` gets of the configuration of a PLC.
- * @param {Record<string, any>} settings of nx-config
- * @param {{ name: string, stations: number[], gap?: number }} more `stations`: all that are configured on the line; `gap`: of the
- *   line, in ms; 0: what the protocol asks for
- * @returns {any}
- */
-const deviceSettings = (settings, { name, stations, gap = 0 }) => ({
+/** What `createNxPlc` gets of the configuration of a PLC. */
+const nxSettings = (settings, { name, stations, gap }) => ({
   name,
   station: settings.station,
   steps: Number(settings.steps),
@@ -28,12 +23,60 @@ const deviceSettings = (settings, { name, stations, gap = 0 }) => ({
   stations
 })
 
+/** What `createChinoRegulator` gets: its options are called as the properties are. */
+const chinoSettings = ({ line: _line, ...settings }, { name }) => ({ ...settings, name })
+
+/**
+ * The kinds of devices, by the type of their config node. `notation`: how one row of a tag table is read.
+ * @type {Record<string, { protocol: 'nx'|'modbus', title: string, settings: Function, create: Function, notation: Function }>}
+ */
+const DEVICES = {
+  'nx-config': {
+    protocol: 'nx',
+    title: 'NX PLC',
+    settings: nxSettings,
+    create: options => lib.createNxPlc(options),
+    notation: ({ areas }, tags) => lib.nxNotation({ areas, tags })
+  },
+  'chino-config': {
+    protocol: 'modbus',
+    title: 'CHINO',
+    settings: chinoSettings,
+    create: options => lib.createChinoRegulator(options),
+    notation: ({ addressMode }, tags) => lib.modbusNotation({ addressMode, tags })
+  }
+}
+
+/** @param {{ type?: string }} settings */
+const kindOf = ({ type = 'nx-config' }) => DEVICES[type]
+
+/**
+ * The settings of a device's config node, with its type.
+ * @param {string} type
+ * @param {Record<string, any>} config as Node-RED hands it to the constructor
+ * @returns {Record<string, any>}
+ * @throws {import('../lib/index.js').PlcError} ENV_MISSING, BAD_SETTING, BAD_STATION, NO_CONFIGURATION
+ */
+const readDevice = (type, config) => ({ type, ...readSettings(type, config) })
+
+/**
+ * What the library gets of the configuration of a device.
+ * @param {Record<string, any>} settings of {@link readDevice}
+ * @param {{ name: string, stations: number[], gap?: number }} more `stations`: all that are configured on the line; `gap`: of the
+ *   line, in ms; 0: what the protocol asks for
+ * @returns {any}
+ */
+const deviceSettings = ({ type, ...settings }, { name, stations, gap = 0 }) => ({
+  ...kindOf({ type }).settings(settings, { name, stations, gap }),
+  type
+})
+
 /** The rows of a tag table that can be used. */
-const usableTags = (areas, tags) => {
+const usableTags = (settings, tags) => {
   const names = new Set()
   return tags.filter(row => {
     try {
-      const [name] = [...(nxNotation({ areas, tags: [row] }).tags ?? [])].map(([key]) => key)
+      const [name] = [...(kindOf(settings).notation(settings, [row]).tags ?? [])].map(([key]) => key)
       return !names.has(name) && names.add(name)
     } catch {
       return false
@@ -42,20 +85,22 @@ const usableTags = (areas, tags) => {
 }
 
 /**
- * The device; a faulty row of the tag table does not stop the others: the PLC is read without it. It is not written then, since the row may hold
+ * The device; a faulty row of the tag table does not stop the others: the device is read without it. It is not written then, since the row may hold
  * limits that somebody relies on.
  * @param {any} lease
  * @param {any} settings of {@link deviceSettings}
  * @returns {{ device: any, tagFault: any }}
  */
 const createDevice = (lease, settings) => {
+  const { type: _type, ...options } = settings
+  const { create } = kindOf(settings)
   try {
-    return { device: createNxPlc({ lease, ...settings }), tagFault: null }
+    return { device: create({ lease, ...options }), tagFault: null }
   } catch (/** @type {any} */ error) {
     if (error.code !== 'BAD_TAG') throw error
-    const tags = usableTags(settings.areas, settings.tags)
-    return { device: createNxPlc({ lease, ...settings, tags, access: 'read' }), tagFault: error }
+    const tags = usableTags(settings, settings.tags)
+    return { device: create({ lease, ...options, tags, access: 'read' }), tagFault: error }
   }
 }
 
-module.exports = { createDevice, deviceSettings }
+module.exports = { createDevice, deviceSettings, kindOf, readDevice }

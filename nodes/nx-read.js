@@ -1,115 +1,6 @@
 'use strict'
-const { PlcError, createReport, itemsOf, messagesOf } = require('../lib/index.js')
+const { startReading } = require('./reading')
 const { openSession } = require('./session')
-const { withCode } = require('./faults')
-
-const VARIABLE = /^\$\{([^}]+)\}$/
-
-/** @returns {any} why an item cannot be read, or null */
-const problemOf = (device, text) => {
-  const variable = VARIABLE.exec(text)
-  if (variable) return new PlcError('ENV_MISSING', { variable: variable[1], setting: 'items' })
-  try {
-    device.item(text)
-    return null
-  } catch (error) {
-    return error
-  }
-}
-
-const badResult = ({ text, problem }, timestamp) => ({
-  name: text.replace(/\W+/g, '_'),
-  item: text,
-  value: null,
-  quality: 'bad',
-  code: problem.code,
-  text: problem.message,
-  timestamp
-})
-
-/**
- * A list of items of which some may not exist: they name themselves and do not stop the others.
- * @param {any} device
- * @param {string[]} texts
- * @returns {{ valid: string[], complete: (results: any[]) => any[], problems: any[] }} `complete`: one result for each text
- * @throws {PlcError} the first problem, if no item is left
- */
-const sorted = (device, texts) => {
-  const rows = texts.map(text => ({ text, problem: problemOf(device, text) }))
-  const valid = rows.filter(({ problem }) => !problem).map(({ text }) => text)
-  const problems = rows.flatMap(({ problem }) => problem ?? [])
-  if (valid.length === 0) throw problems[0]
-  const complete = results => {
-    const rest = results[Symbol.iterator]()
-    const timestamp = results[0]?.timestamp ?? Date.now()
-    return rows.map(row => (row.problem ? badResult(row, timestamp) : rest.next().value))
-  }
-  return { valid, complete, problems }
-}
-
-/** What is wrong with results, as one error; null if nothing is. */
-const faultOf = results => {
-  const bad = results.filter(({ quality }) => quality === 'bad')
-  if (bad.length === 0) return null
-  const more = bad.length < results.length ? ` (${bad.length} of ${results.length} items are bad)` : ''
-  return withCode(bad[0].code, bad[0].text + more)
-}
-
-const summary = results => {
-  const bad = results.filter(({ quality }) => quality === 'bad')
-  return { phase: /** @type {'read'} */ ('read'), count: results.length, bad: bad.length, code: bad[0]?.code }
-}
-
-/** Sends results: the first message is the one that asked, so that its other properties go on. */
-const createDelivery = (RED, { settings, plc }) => {
-  const { format, badValues, ranges, booleans } = settings
-  const shape = { format, badValues, ranges, booleans, device: plc.label, simulated: plc.simulated }
-  const report = createReport(settings)
-  return (results, msg, send) => {
-    const parts = messagesOf(report(results), { ...shape, id: RED.util.generateId() })
-    if (parts.length === 0) return
-    delete msg.bad
-    const carriers = parts.map((_, index) => (index === 0 ? msg : RED.util.cloneMessage(msg)))
-    send([parts.map((fields, index) => Object.assign(carriers[index], fields))])
-  }
-}
-
-const startReader = (RED, session) => {
-  const { node, settings, device, display } = session
-  const deliver = createDelivery(RED, session)
-  /** @type {any} */
-  const fixed = settings.itemsType === 'list' ? sorted(device, itemsOf(settings.items)) : null
-  fixed?.problems.forEach(session.warn)
-
-  const show = results => {
-    if (!session.closed) display.update(summary(results))
-  }
-  const ask = async (msg, send) => {
-    const { valid, complete } = fixed ?? sorted(device, takeItems(msg))
-    const results = complete(await device.read(valid))
-    show(results)
-    deliver(results, msg, send)
-    if (results.every(({ quality }) => quality === 'bad')) throw faultOf(results)
-  }
-  const polled = (answers, { failure, changed }) => {
-    if (answers.length === 0) return node.error(withCode(failure.code, failure.text ?? failure.message), {})
-    const results = fixed.complete(answers)
-    show(results)
-    deliver(results, {}, messages => node.send(messages))
-    const fault = changed ? faultOf(answers) : null
-    if (fault) node.error(fault, { device: session.plc.label })
-  }
-  const polling = fixed && settings.interval > 0
-  const group = { items: fixed?.valid, interval: settings.interval }
-  const subscription = polling ? device.subscribe(group, polled) : null
-  return { ask, stop: () => subscription?.stop() }
-}
-
-const takeItems = msg => {
-  const items = Object.hasOwn(msg, 'items') ? msg.items : undefined
-  delete msg.items
-  return itemsOf(items)
-}
 
 module.exports = function (RED) {
   /** @this {any} */
@@ -121,9 +12,9 @@ module.exports = function (RED) {
       type: 'nx-read',
       config,
       start(opened) {
-        const reader = startReader(RED, opened)
-        ask = reader.ask
-        return reader.stop
+        const reading = startReading(RED, opened)
+        ask = reading.ask
+        return reading.stop
       }
     })
     this.on('input', (msg, send, done) => {

@@ -1,5 +1,6 @@
 'use strict'
-const { PlcError, listPorts } = require('../lib/index.js')
+const { PlcError, listPorts, mixedConflict } = require('../lib/index.js')
+const { kindOf } = require('./device-settings')
 const { poolSettings } = require('./line-settings')
 const { sharedPool } = require('./pool')
 const { readSettings } = require('./settings')
@@ -7,36 +8,58 @@ const { simulatedWire } = require('./simulated')
 
 const nameOf = node => node.name || node.id
 
+const memberOf = ({ settings, station, label }) => ({
+  protocol: kindOf(settings).protocol,
+  station,
+  masterIds: settings.masterIds,
+  name: label
+})
+
 /**
- * Who is on the line: one configuration per station.
+ * Who is on the line: one configuration per station, and numbers that cannot be mistaken for each other.
  * @param {any} line the config node
  */
 const stationList = line => {
-  const plcs = new Map()
+  const members = new Map()
+
+  const checkNumber = deviceNode => {
+    const other = members.get(deviceNode.station)
+    if (!other || other.id === deviceNode.id) return
+    const names = { owner: nameOf(deviceNode), other: nameOf(other), line: nameOf(line) }
+    throw new PlcError('DUPLICATE_STATION', { ...names, station: deviceNode.station })
+  }
+  const checkMixed = deviceNode => {
+    const one = memberOf(deviceNode)
+    for (const other of members.values()) {
+      const another = memberOf(other)
+      const reason = one.protocol === another.protocol ? '' : mixedConflict(one, another)
+      if (!reason) continue
+      const names = { owner: nameOf(deviceNode), other: nameOf(other), line: nameOf(line) }
+      throw new PlcError('MIXED_LINE', { ...names, reason })
+    }
+  }
+
   return {
-    /** @throws {PlcError} DUPLICATE_STATION naming both */
-    join(plc) {
-      const other = plcs.get(plc.station)
-      if (other && other.id !== plc.id) {
-        const names = { owner: nameOf(plc), other: nameOf(other), line: nameOf(line) }
-        throw new PlcError('DUPLICATE_STATION', { ...names, station: plc.station })
-      }
-      plcs.set(plc.station, plc)
-      line.wire?.add(plc.settings)
+    /** @throws {PlcError} DUPLICATE_STATION, MIXED_LINE, naming both */
+    join(deviceNode) {
+      checkNumber(deviceNode)
+      checkMixed(deviceNode)
+      members.set(deviceNode.station, deviceNode)
+      line.wire?.add(deviceNode.settings)
     },
-    leave(plc) {
-      if (plcs.get(plc.station) !== plc) return
-      plcs.delete(plc.station)
-      line.wire?.remove(plc.station)
+    leave(deviceNode) {
+      if (members.get(deviceNode.station) !== deviceNode) return
+      members.delete(deviceNode.station)
+      line.wire?.remove(deviceNode.station)
     },
     /** A station that is only tested: on a simulated line it has power for that long. */
     visit(settings) {
       line.wire.add(settings)
       return () => {
-        if (!plcs.has(settings.station)) line.wire.remove(settings.station)
+        if (!members.has(settings.station)) line.wire.remove(settings.station)
       }
     },
-    stations: () => [...plcs.keys()]
+    stations: () => [...members.keys()]
   }
 }
 
@@ -50,7 +73,7 @@ module.exports = function (RED) {
   /** @this {any} */
   function PlcLine(config) {
     RED.nodes.createNode(this, config)
-    // only nodes on a tab stand in here: nx-config enters its readers and writers
+    // only nodes on a tab stand in here: the devices enter their readers and writers
     this.users = {}
     this.fault = null
     try {

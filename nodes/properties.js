@@ -14,6 +14,29 @@ const flag = (fallback = false) => ({ kind: 'flag', fallback })
 const list = () => ({ kind: 'list', fallback: [] })
 const node = () => ({ kind: 'node', fallback: '', needed: true })
 
+/** What a node that reads has beside its device. */
+const READING = {
+  itemsType: choice('list', 'list', 'msg'),
+  items: list(),
+  interval: number(1000, 0, 86400000, { except: [1, 9], says: '0, or 10 to 86400000' }),
+  format: choice('object', 'object', 'message', 'envelope', 'list'),
+  badValues: choice('omit', 'omit', 'null'),
+  ranges: choice('array', 'array', 'values'),
+  booleans: choice('boolean', 'boolean', 'number'),
+  report: choice('all', 'all', 'changed', 'allOnChange')
+}
+
+/** What a node that writes has beside its device. */
+const WRITING = {
+  target: text(),
+  verify: flag(),
+  onFailure: choice('error', 'error', 'output'),
+  acceptRetained: flag(),
+  coalesce: flag(),
+  topic: choice('item', 'item', 'keep', 'fixed'),
+  topicText: text()
+}
+
 /** @type {Record<string, Record<string, Row>>} */
 const PROPERTIES = {
   'plc-line': {
@@ -55,28 +78,40 @@ const PROPERTIES = {
     areas: list(),
     tags: list()
   },
-  'nx-read': {
+  'chino-config': {
     name: text(),
-    plc: node(),
-    itemsType: choice('list', 'list', 'msg'),
-    items: list(),
-    interval: number(1000, 0, 86400000, { except: [1, 9], says: '0, or 10 to 86400000' }),
-    format: choice('object', 'object', 'message', 'envelope', 'list'),
-    badValues: choice('omit', 'omit', 'null'),
-    ranges: choice('array', 'array', 'values'),
-    booleans: choice('boolean', 'boolean', 'number'),
-    report: choice('all', 'all', 'changed', 'allOnChange')
+    line: node(),
+    station: number('', 0, 247, { needed: true, isStation: true }),
+    protocol: choice('rtu', 'rtu', 'ascii'),
+    timeout: number(1000, 10, 600000),
+    sendWait: number(0, 0, 10000, { whole: false }),
+    attempts: number(3, 1, 20),
+    addressMode: choice('1-base', '1-base', '0-base'),
+    coilRead: number(2000, 1, 2000),
+    coilUnit: number(1, 1, 2000),
+    coilFunction: choice('0F', '0F', '05', 'auto'),
+    coilWrite: number(1968, 1, 1968),
+    discreteRead: number(2000, 1, 2000),
+    discreteUnit: number(1, 1, 2000),
+    inputRead: number(125, 1, 125),
+    holdingRead: number(125, 1, 125),
+    holdingFunction: choice('10', '10', '06', 'auto'),
+    holdingWrite: number(123, 1, 123),
+    wordOrder: choice('low', 'low', 'high'),
+    broadcast: flag(),
+    turnaround: number(100, 0, 10000),
+    access: choice('read', 'read', 'write'),
+    writableRanges: text(),
+    tags: list()
   },
-  'nx-write': {
+  'nx-read': { name: text(), plc: node(), ...READING },
+  'nx-write': { name: text(), plc: node(), ...WRITING },
+  'chino-regulator': {
     name: text(),
-    plc: node(),
-    target: text(),
-    verify: flag(),
-    onFailure: choice('error', 'error', 'output'),
-    acceptRetained: flag(),
-    coalesce: flag(),
-    topic: choice('item', 'item', 'keep', 'fixed'),
-    topicText: text()
+    regulator: node(),
+    mode: choice('read', 'read', 'write', 'both'),
+    ...READING,
+    ...WRITING
   }
 }
 
@@ -132,14 +167,18 @@ const allowed = row => {
   return row.known ? row.known.join(', ') : row.kind
 }
 
-// which properties count only for some transports
-const APPLIES = { path: 'serial', host: 'tcp', port: 'tcp' }
+// which transport a property of a line counts for
+const TRANSPORTS = { path: 'serial', host: 'tcp', port: 'tcp' }
+
+const unused = (mode, name) => (mode === 'read' && name in WRITING) || (mode === 'write' && name in READING)
 
 /**
  * Whether a property counts at all with the others as they are.
  * @param {string} type @param {string} name @param {Record<string, any>} config
  */
-const applies = (type, name, config) =>
-  type !== 'plc-line' || !APPLIES[name] || APPLIES[name] === (config.transport || 'serial')
+const applies = (type, name, config) => {
+  if (type === 'plc-line') return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || 'serial')
+  return type !== 'chino-regulator' || !unused(config.mode || 'read', name)
+}
 
 module.exports = { PROPERTIES, readProperty, allowed, applies }

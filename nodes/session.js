@@ -52,14 +52,22 @@ const deployReport = (RED, node) => {
   }
 }
 
-const findPlc = (RED, settings, node) => {
-  const plc = RED.nodes.getNode(settings.plc)
-  if (plc?.type !== 'nx-config') throw new PlcError('NO_CONFIGURATION', { node: node.name || node.type, what: 'plc' })
-  return plc
+/** Which property of a node names its device, and what type that has. */
+const DEVICES = {
+  'nx-read': { property: 'plc', of: 'nx-config' },
+  'nx-write': { property: 'plc', of: 'nx-config' },
+  'chino-regulator': { property: 'regulator', of: 'chino-config' }
+}
+
+const findDevice = (RED, { type, settings, node }) => {
+  const { property, of } = DEVICES[type]
+  const found = RED.nodes.getNode(settings[property])
+  if (found?.type === of) return found
+  throw new PlcError('NO_CONFIGURATION', { node: node.name || type, what: property })
 }
 
 /**
- * What nx-read and nx-write have in common: their settings, the PLC with its line, the status, and a close that always ends.
+ * What the nodes of the flow have in common: their settings, the device with its line, the status, and a close that always ends.
  * @param {any} RED @param {any} node
  * @param {{ type: string, config: any, start: (session: any) => (() => void) | void }} own `start` runs if the configuration is
  *   usable and may throw a PlcError; it returns what stops it
@@ -73,9 +81,9 @@ const openSession = (RED, node, { type, config, start }) => {
   let stop
   const attached = () => {
     session.settings = readSettings(type, config)
-    session.plc = findPlc(RED, session.settings, node)
-    display.simulated(session.plc.simulated)
-    session.device = session.plc.attach(node, line => display.update({ line }))
+    session.deviceNode = findDevice(RED, { type, settings: session.settings, node })
+    display.simulated(session.deviceNode.simulated)
+    session.device = session.deviceNode.attach(node, line => display.update({ line }))
     stop = start(session)
   }
   try {
@@ -94,7 +102,7 @@ const openSession = (RED, node, { type, config, start }) => {
     display.stop()
     report.stop()
     stop?.()
-    session.plc?.detach(node)
+    session.deviceNode?.detach(node)
     done()
   })
   return session

@@ -1,5 +1,5 @@
 'use strict'
-const { DEMO, createNxPlc, createRealClock, createWire } = require('../lib/sim/index.js')
+const { DEMO, createChinoRegulator, createNxPlc, createRealClock, createWire } = require('../lib/sim/index.js')
 
 // what the examples show beside the simulator's own demo values: K0 is a set value in tenths, M10 follows it, M11 is a load
 const EXAMPLES = [
@@ -9,11 +9,19 @@ const EXAMPLES = [
 const SET_VALUES = { K0: 1800, K10: 600 }
 const ONLY_PLC = 255
 
-const newStation = (station, { areas, clock }) => {
+const newPlc = (station, { areas, clock }) => {
   const plc = createNxPlc({ station, clock, areas, behaviour: [...DEMO, ...EXAMPLES] })
   for (const [address, value] of Object.entries(SET_VALUES)) plc.set(address, value)
   return plc
 }
+
+const newStation = (station, { settings, clock }) =>
+  settings.type === 'chino-config'
+    ? createChinoRegulator({ station, protocol: settings.protocol, clock })
+    : newPlc(station, { areas: settings.areas, clock })
+
+/** What a station is: with another device, or another protocol, it is another one. */
+const makeOf = ({ type = 'nx-config', protocol = '' }) => `${type} ${protocol}`
 
 /**
  * The wire of a simulated line. A station keeps its values while the line's configuration lives; one that is not configured
@@ -23,16 +31,25 @@ const newStation = (station, { areas, clock }) => {
 const simulatedWire = ({ baudRate }) => {
   const clock = createRealClock()
   const wire = createWire({ clock, baudRate })
+  const makes = new Map()
   // the only PLC of a line has a number of its own behind 255
   const numberOf = station => (station === ONLY_PLC ? 1 : station)
-  const find = station => wire.stations().find(plc => plc.station === numberOf(station))
+  const find = station => wire.stations().find(each => each.station === numberOf(station))
+  const place = settings => {
+    const number = numberOf(settings.station)
+    wire.remove(number)
+    wire.add(newStation(number, { settings, clock }))
+    makes.set(number, makeOf(settings))
+  }
   return {
     wire,
     find,
-    /** @param {{ station: number, areas: any[] }} settings of nx-config */
-    add({ station, areas }) {
-      if (find(station)) wire.setOff(numberOf(station), false)
-      else wire.add(newStation(numberOf(station), { areas, clock }))
+    /** @param {any} settings of a device's config node, with its type; a broadcast is no station */
+    add(settings) {
+      if (settings.type === 'chino-config' && settings.station === 0) return
+      const number = numberOf(settings.station)
+      if (makes.get(number) === makeOf(settings)) wire.setOff(number, false)
+      else place(settings)
     },
     /** @param {number} station */
     remove: station => wire.setOff(numberOf(station), true)

@@ -37,6 +37,17 @@ const CAUSES = {
   PLC_NOT_PERFORMED: 'refused',
   PLC_FRAME_TOO_LONG: 'refused',
   PLC_NO_SERVICE: 'refused',
+  MODBUS_ILLEGAL_FUNCTION: 'rejected',
+  MODBUS_ILLEGAL_ADDRESS: 'noAddress',
+  MODBUS_ILLEGAL_VALUE: 'rejected',
+  MODBUS_DEVICE_FAILURE: 'deviceFailure',
+  MODBUS_ACKNOWLEDGE: 'deviceBusy',
+  MODBUS_BUSY: 'deviceBusy',
+  MODBUS_NEGATIVE_ACKNOWLEDGE: 'rejected',
+  MODBUS_MEMORY_PARITY: 'deviceFailure',
+  MODBUS_GATEWAY_PATH: 'gateway',
+  MODBUS_GATEWAY_TARGET: 'gateway',
+  MODBUS_EXCEPTION: 'rejected',
   QUEUE_FULL: 'overload',
   DEADLINE: 'overload',
   LINE_DOWN: 'down',
@@ -71,6 +82,8 @@ const readStatus = ({ count = 0, bad = 0, code }) => {
 
 /** @param {State} state */
 const writeStatus = ({ outcome, code }) => {
+  // nobody acknowledges a broadcast: that is how it works, not a fault
+  if (code === 'BROADCAST_UNCONFIRMED') return show('yellow', 'ring', 'broadcast')
   const known = OUTCOMES[outcome ?? '']
   if (known) return show(known.fill, known.shape, known.key)
   return outcome === 'refused'

@@ -1,0 +1,65 @@
+'use strict'
+const { PlcError } = require('../lib/index.js')
+const { startReading } = require('./reading')
+const { openSession } = require('./session')
+const { startWriting } = require('./writing')
+
+const BROADCAST = 0
+const refused = (what, reason) => new PlcError('BROADCAST_REFUSED', { what, reason })
+
+/** What can never work with a broadcast is a mistake of the flow: refused when it starts. */
+const checkBroadcast = ({ settings: { mode, verify }, device: { station } }) => {
+  if (station !== BROADCAST) return
+  if (mode !== 'write') throw refused('reading', 'no station answers; set the mode to "write"')
+  if (verify) throw refused('reading back', 'no station answers')
+}
+
+/** In a node that also reads, a faulty tag table stops the writing only. */
+const writingBesideReading = session => {
+  const { tagFault } = session.deviceNode
+  return tagFault ? () => Promise.reject(tagFault) : startWriting(session, { output: 1 })
+}
+
+const asks = msg => Object.hasOwn(msg, 'items')
+
+/** What a message does in each mode; `write` before `read`, since what polls must be stopped again. */
+const MODES = {
+  read(RED, session) {
+    const { ask, stop } = startReading(RED, session)
+    return { reads: () => true, ask, stop }
+  },
+  write(_RED, session) {
+    return { reads: () => false, write: startWriting(session) }
+  },
+  both(RED, session) {
+    const write = writingBesideReading(session)
+    const { ask, stop } = startReading(RED, session, { named: true })
+    return { reads: asks, ask, write, stop }
+  }
+}
+
+module.exports = function (RED) {
+  /** @this {any} */
+  function ChinoRegulator(config) {
+    RED.nodes.createNode(this, config)
+    /** @type {any} */
+    let work
+    const session = openSession(RED, this, {
+      type: 'chino-regulator',
+      config,
+      start(opened) {
+        checkBroadcast(opened)
+        work = MODES[opened.settings.mode](RED, opened)
+        return work.stop
+      }
+    })
+    this.on('input', (msg, send, done) => {
+      if (session.fault) return done(session.fault)
+      const reads = work.reads(msg)
+      const failed = reads ? error => session.failed(error, done) : done
+      work[reads ? 'ask' : 'write'](msg, send).then(() => done(), failed)
+    })
+  }
+
+  RED.nodes.registerType('chino-regulator', ChinoRegulator)
+}

@@ -261,4 +261,12 @@ class PlcError extends Error {
   }
 }
 
-module.exports = { CODES, PlcError }
+const REFUSAL = /^(PLC|MODBUS)_/
+
+/**
+ * Whether an error is the station's own word: an answer came, and it says no.
+ * @param {any} error
+ */
+const isRefusal = error => typeof error?.code === 'string' && REFUSAL.test(error.code)
+
+module.exports = { CODES, PlcError, isRefusal }

@@ -2,34 +2,50 @@
 const { PlcError } = require('../error')
 const { parseExpression } = require('../tag/item')
 const { decodeValue } = require('../tag/value')
+const { widthOf } = require('./points')
 
 /**
  * What may be written at all; asked before anything is sent. Limits of a tag bind its words and bits, by whatever name,
  * type or width they are written.
  */
 
-/** word address -> the limited values that stand on it: `{ item, start }`. */
-const limitedWords = notation => {
-  const words = new Map()
+const BLOCK = 16 // bits: where two spans can meet at all is looked up by these, then they are compared bit by bit
+
+/** The absolute bits of the values of an item, one span each. */
+const spansOf = item => {
+  const size = item.kind === 'word' ? 16 : 1
+  const width = widthOf(item) * size
+  return Array.from({ length: item.count }, (_, index) => {
+    const start = item.address * size + index * width
+    return { start, end: start + width }
+  })
+}
+
+const blocksOf = ({ start, end }) => {
+  const first = Math.floor(start / BLOCK)
+  return Array.from({ length: Math.floor((end - 1) / BLOCK) - first + 1 }, (_, at) => first + at)
+}
+
+/** Block of bits -> the limited values that stand on it: `{ item, start, end }`. */
+const limitedBlocks = notation => {
+  const blocks = new Map()
   for (const tag of notation.tags.values()) {
     if (tag.min === null && tag.max === null) continue
     const item = parseExpression(tag.address, notation, { tag })
-    for (let index = 0; index < item.count; index++) {
-      const start = item.address + index * item.type.words
-      for (let word = start; word < start + item.type.words; word++) {
-        words.set(word, [...(words.get(word) ?? []), { item, start }])
-      }
+    for (const span of spansOf(item)) {
+      const limited = { item, ...span }
+      for (const block of blocksOf(span)) blocks.set(block, [...(blocks.get(block) ?? []), limited])
     }
   }
-  return words
+  return blocks
 }
 
 const refuse = (item, reason) => new PlcError('NOT_WRITABLE', { item: item.text, reason })
 
 const inRanges = (item, ranges) => {
-  const size = item.kind === 'word' ? 16 : 1
-  const end = (item.address + item.count * item.type.words) * size
-  let at = item.address * size
+  const spans = spansOf(item)
+  const { end } = spans[spans.length - 1]
+  let at = spans[0].start
   while (at < end) {
     const range = ranges.find(each => each.start <= at && at < each.end)
     if (!range) return false
@@ -43,41 +59,39 @@ const checkTarget = (item, ranges) => {
   throw refuse(item, 'a target that comes in a message must be a writable tag or lie in the writable ranges')
 }
 
-const sameValue = (item, start, { item: limited, start: from }) =>
-  item.kind === 'word' &&
-  start === from &&
+const sameValue = (item, span, { item: limited, start }) =>
+  item.kind === limited.kind &&
+  span.start === start &&
   item.type.name === limited.type.name &&
   (item.type.words === 1 || item.wordOrder === limited.wordOrder)
 
-/** A value that stands on limited words must be that same value, inside the limits. */
-const checkLimits = (item, { start, raw, words }) => {
-  const first = item.kind === 'bit' ? start >> 4 : start
-  const last = item.kind === 'bit' ? first : start + item.type.words - 1
-  for (let word = first; word <= last; word++) {
-    for (const limited of words.get(word) ?? []) {
-      const { tag } = limited.item
-      if (!sameValue(item, start, limited)) {
-        throw refuse(item, `it overlaps the tag ${tag.name}, which has limits, in another type or width`)
+const checkInside = (item, raw, limited) => {
+  const { tag } = limited
+  const { value } = /** @type {{ value: number }} */ (decodeValue(limited, raw))
+  if ((tag.min === null || value >= tag.min) && (tag.max === null || value <= tag.max)) return
+  const limits = { least: tag.min ?? 'any', most: tag.max ?? 'any' }
+  throw new PlcError('VALUE_OUT_OF_RANGE', { item: `${item.text} (tag ${tag.name})`, value, ...limits })
+}
+
+/** A value that stands on limited bits must be that same value, inside the limits. */
+const checkLimits = (item, { span, raw, blocks }) => {
+  for (const block of blocksOf(span)) {
+    for (const limited of blocks.get(block) ?? []) {
+      if (span.end <= limited.start || limited.end <= span.start) continue
+      if (!sameValue(item, span, limited)) {
+        const { name } = limited.item.tag
+        throw refuse(item, `it overlaps the tag ${name}, which has limits, in another type or width`)
       }
-      const { value } = /** @type {{ value: number }} */ (decodeValue(limited.item, raw))
-      if ((tag.min !== null && value < tag.min) || (tag.max !== null && value > tag.max)) {
-        const least = tag.min ?? 'any'
-        throw new PlcError('VALUE_OUT_OF_RANGE', {
-          item: `${item.text} (tag ${tag.name})`,
-          value,
-          least,
-          most: tag.max ?? 'any'
-        })
-      }
+      checkInside(item, raw, limited.item)
     }
   }
 }
 
 /**
- * @param {any} settings of the PLC
+ * @param {any} settings of the station; `reasons`: why its areas, or bits of its words, cannot be written
  */
-const createGuard = ({ access, station, ranges, notation }) => {
-  const words = limitedWords(notation)
+const createGuard = ({ access, station, ranges, notation, reasons }) => {
+  const blocks = limitedBlocks(notation)
   return {
     /**
      * Whether an item may be written at all.
@@ -87,10 +101,8 @@ const createGuard = ({ access, station, ranges, notation }) => {
      */
     checkItem: (item, { fixed = false }) => {
       if (access !== 'write') throw new PlcError('READ_ONLY', { item: item.text, station })
-      if (item.throughWord) throw refuse(item, 'its area has only words: a single bit of it cannot be written')
-      if (!item.areaWritable) {
-        throw refuse(item, 'its area is unconfirmed or not for writing; confirm its row in the area table first')
-      }
+      if (item.throughWord && reasons.throughWord) throw refuse(item, reasons.throughWord)
+      if (!item.areaWritable) throw refuse(item, reasons.area)
       if (!fixed) checkTarget(item, ranges)
     },
     /**
@@ -100,7 +112,7 @@ const createGuard = ({ access, station, ranges, notation }) => {
      * @throws {PlcError} NOT_WRITABLE, VALUE_OUT_OF_RANGE
      */
     checkValues: (item, values) =>
-      values.forEach((raw, index) => checkLimits(item, { start: item.address + index * item.type.words, raw, words }))
+      spansOf(item).forEach((span, index) => checkLimits(item, { span, raw: values[index], blocks }))
   }
 }
 

@@ -1,5 +1,6 @@
 'use strict'
-const { asPlcError } = require('./talk')
+const { isRefusal } = require('../error')
+const { asPlcError } = require('./failure')
 
 /**
  * What became of a write. Pure.
@@ -44,10 +45,12 @@ const unsent = (error, entries, outcome = 'refused') => {
   }
 }
 
+const UNKNOWN = new Set(['WRITE_UNKNOWN', 'BROADCAST_UNCONFIRMED'])
+
 /** @param {import('../error').PlcError} error @returns {Word} what a failed request means */
 const wordFor = error => {
-  if (error.code === 'WRITE_UNKNOWN') return 'unknown'
-  return error.code.startsWith('PLC_') ? 'refused' : 'failed'
+  if (UNKNOWN.has(error.code)) return 'unknown'
+  return isRefusal(error) ? 'refused' : 'failed'
 }
 
 /** The worst that an item's values met. */

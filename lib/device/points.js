@@ -1,21 +1,67 @@
 'use strict'
 const { PlcError } = require('../error')
+const { splitType } = require('../tag/item')
 const { decodeValue } = require('../tag/value')
 
-/** Items -> absolute points to read, and back: raw words and bits -> results. Pure. */
+/** Items -> absolute points to read and to write, and back: raw words and bits -> results. Pure. */
 
 const MOST_POINTS = 20000
 
+const WORD = 16
+
+/**
+ * How many addresses (bits or words) one value of an item takes: a word that is packed into bits takes sixteen of them.
+ * @param {any} item
+ */
+const widthOf = item => (item.packed ? item.type.words * WORD : item.type.words)
+
 /** Addresses of one value of an item. A bit that the station offers only in its word is read through it. */
 const pointOf = (item, index) => {
-  if (item.throughWord) return { kind: 'word', address: (item.address + index) >> 4, count: 1 }
-  const { kind, address, type } = item
-  return { kind, address: address + index * type.words, count: type.words }
+  const { kind, address } = item
+  if (item.throughWord) return { kind: 'word', address: (address + index) >> 4, count: 1 }
+  const count = widthOf(item)
+  return { kind, address: address + index * count, count }
 }
+
+/** The address as the user wrote it, or the name of the tag. */
+const writtenAs = item => (item.tag ? item.text : splitType(item.text.trim())[0])
+
+/** Bits -> words, the lowest bit first; and back. */
+const packed = bits =>
+  Array.from({ length: bits.length / WORD }, (_, word) =>
+    bits.slice(word * WORD, (word + 1) * WORD).reduce((sum, bit, at) => sum | (bit ? 1 << at : 0), 0)
+  )
+const unpacked = words => words.flatMap(word => Array.from({ length: WORD }, (_, at) => Boolean((word >> at) & 1)))
+
+/**
+ * The points that are written for the values of an item; `through`: the station writes only the word of this bit.
+ * @param {{ item: any, values: any[][] }} entry values: raw words, or one bit, of each value
+ * @returns {{ kind: 'bit'|'word', address: number, count: number, values: (boolean|number)[], text: string, through: boolean }[]}
+ */
+const writePointsOf = ({ item, values }) => {
+  const width = widthOf(item)
+  return values.map((raw, index) => ({
+    kind: item.kind,
+    address: item.address + index * width,
+    values: item.packed ? unpacked(raw) : raw,
+    count: width,
+    text: item.range ? item.elements[index].text : writtenAs(item),
+    through: item.throughWord
+  }))
+}
+
+/** What is read to compare a point that was written. */
+const readBackOf = ({ kind, address, count, text, through }) =>
+  through
+    ? { kind: /** @type {'word'} */ ('word'), address: address >> 4, count: 1, text }
+    : { kind, address, count, text }
+
+/** The raw values of a written point, out of what {@link readBackOf} gave. */
+const readBackValues = ({ address, through }, raw) => (through ? [Boolean((raw[0] >> (address & 15)) & 1)] : raw)
 
 /** @param {import('../tag/item').Item[]} items @throws {PlcError} TOO_MANY */
 const checkTotal = items => {
-  const total = items.reduce((sum, item) => sum + item.count * item.type.words, 0)
+  const total = items.reduce((sum, item) => sum + item.count * widthOf(item), 0)
   if (total > MOST_POINTS) throw new PlcError('TOO_MANY', { count: total, unit: 'addresses', most: MOST_POINTS })
 }
 
@@ -27,13 +73,20 @@ const checkTotal = items => {
  */
 const pointsOf = items => {
   checkTotal(items)
-  return items.flatMap(item => item.elements.map(({ text }, index) => ({ ...pointOf(item, index), text })))
+  return items.flatMap(item =>
+    item.elements.map(({ text }, index) => ({ ...pointOf(item, index), text: item.range ? text : writtenAs(item) }))
+  )
 }
 
 /**
  * What came for a point.
  * @typedef {{ raw: (boolean|number)[], at: number } | { error: PlcError, at: number }} Reading `at`: epoch ms
  */
+
+const rawOf = (item, index, raw) => {
+  if (item.packed) return packed(raw)
+  return readBackValues({ address: item.address + index, through: item.throughWord }, raw)
+}
 
 /** @returns {any} */
 const elementOf = (item, index, reading) => {
@@ -42,8 +95,7 @@ const elementOf = (item, index, reading) => {
   if ('error' in reading) {
     return { ...base, value: null, quality: 'bad', code: reading.error.code, text: reading.error.message }
   }
-  const raw = item.throughWord ? [Boolean((reading.raw[0] >> ((item.address + index) & 15)) & 1)] : reading.raw
-  const answer = decodeValue(item, raw)
+  const answer = decodeValue(item, rawOf(item, index, reading.raw))
   if ('code' in answer) return { ...base, value: null, quality: 'bad', code: answer.code, text: answer.text }
   return { ...base, value: answer.value, quality: 'good' }
 }
@@ -89,4 +141,4 @@ const resultsOf = (items, readings) => {
  * @property {any[]} [elements] of a range: a result per value
  */
 
-module.exports = { MOST_POINTS, checkTotal, pointsOf, resultsOf }
+module.exports = { MOST_POINTS, checkTotal, pointsOf, readBackOf, readBackValues, resultsOf, widthOf, writePointsOf }

@@ -1,27 +1,17 @@
 'use strict'
 const { PlcError } = require('../error')
-const { planReads } = require('../plan')
-const { asPlcError, isStationFailure } = require('./talk')
+const { asPlcError, isStationFailure } = require('./failure')
 
 /**
- * Reads points, whatever some of them do: a request that fails spoils only its own points, an address that the PLC does
+ * Reads points, whatever some of them do: a request that fails spoils only its own points, an address that the station does
  * not have names itself, and a silent station is not waited for again and again.
  */
 
-const REST = 30000 // ms that an address stays out of the joint polls after the PLC said that it does not have it
+const REST = 30000 // ms that an address stays out of the joint polls after the station said that it does not have it
 const MOST_SPLITS = 64 // requests that one read may spend on finding bad addresses
 const BROKEN = new Set(['CRC_ERROR', 'INCOMPLETE', 'BAD_ANSWER'])
 
 const keyOf = point => `${point.kind} ${point.address} ${point.count}`
-
-/** The point's own word for error 2, instead of the request's first address. */
-const named = (error, point, station) =>
-  error.code === 'PLC_OUT_OF_RANGE'
-    ? new PlcError('PLC_OUT_OF_RANGE', { station, address: point.text, cause: error })
-    : error
-
-const SPLITS = new Set(['PLC_OUT_OF_RANGE', 'PLC_FRAME_TOO_LONG'])
-const UNKNOWN_FUNCTION = new Set(['PLC_WRONG_FUNCTION', 'PLC_NO_SERVICE'])
 
 /**
  * @typedef {{ kind: 'bit'|'word', address: number, count: number, text: string }} Point
@@ -36,8 +26,9 @@ class Reader {
   #talk
   #clock
   #station
-  #limits
-  /** Addresses that the PLC refused: key -> { error, until }. */
+  /** @type {import('./options').Plan} */
+  #plan
+  /** Addresses that the station refused: key -> { error, until }. */
   #absent = new Map()
 
   /** @param {{ talk: any, settings: any, clock: any }} options */
@@ -45,12 +36,12 @@ class Reader {
     this.#talk = talk
     this.#clock = clock
     this.#station = settings.station
-    this.#limits = settings.planLimits
+    this.#plan = settings.plan
   }
 
   /**
    * @param {Point[]} points
-   * @param {{ priority: number, fresh: boolean }} options fresh: ask also for addresses that the PLC refused lately
+   * @param {{ priority: number, fresh: boolean }} options fresh: ask also for addresses that the station refused lately
    * @returns {Promise<import('./points').Reading[]>} one per point
    * @throws {PlcError} FRAME_TOO_LONG one value does not fit into one request
    */
@@ -58,7 +49,8 @@ class Reader {
     /** @type {Job} */
     const job = { points, priority, readings: new Array(points.length), splits: 0 }
     const { joint, due, resting } = this.#groups(points, fresh)
-    for (const index of resting) this.#fail([index], this.#absent.get(keyOf(points[index])).error, job)
+    for (const index of resting)
+      this.#fail([index], this.#named(points[index], this.#absent.get(keyOf(points[index]))), job)
     // known absent addresses are asked for apart, so that they do not spoil the others' request again
     const alone = equals(due, points)
     await this.#run(this.#requests([joint, ...alone], job), job)
@@ -79,7 +71,7 @@ class Reader {
   }
 
   #requests(parts, job) {
-    return parts.flatMap(part => plan(part, job.points, this.#limits))
+    return parts.flatMap(part => planned(part, job.points, this.#plan))
   }
 
   /**
@@ -119,18 +111,15 @@ class Reader {
   /** What another plan can mend. @returns {Promise<PlcError|null>} what is left of the error */
   async #settle(error, request, job) {
     const indexes = request.points.map(({ point }) => point)
-    if (SPLITS.has(error.code)) return this.#split(indexes, error, job)
-    if (request.ask === 'readMixed' && UNKNOWN_FUNCTION.has(error.code)) {
-      this.#limits = { ...this.#limits, readMixed: 0 }
-      return this.#run(this.#requests([indexes], job), job)
-    }
+    if (this.#plan.splits.has(error.code)) return this.#split(indexes, error, job)
+    if (this.#plan.simpler(request, error)) return this.#run(this.#requests([indexes], job), job)
     return error
   }
 
-  /** Error 2 names no address: halve until the bad ones stand alone. @returns {Promise<PlcError|null>} */
+  /** Such a refusal names no address: halve until the bad ones stand alone. @returns {Promise<PlcError|null>} */
   async #split(indexes, error, job) {
     const [first, second] = distinct(indexes, job.points)
-    if (second === undefined) return this.#refused(first, named(error, job.points[indexes[0]], this.#station))
+    if (second === undefined) return this.#refused(first, indexes, { error, job })
     if (job.splits >= MOST_SPLITS) return error
     job.splits += 2
     const sorted = [...indexes].sort((a, b) => order(job.points[a], job.points[b]))
@@ -138,9 +127,20 @@ class Reader {
     return this.#run(this.#requests([sorted.slice(0, middle), sorted.slice(middle)], job), job)
   }
 
-  #refused(key, error) {
-    if (error.code === 'PLC_OUT_OF_RANGE') this.#absent.set(key, { error, until: this.#clock.now() + REST })
+  /** The address that stands alone is refused: each item that asked for it is told so by its own name. */
+  #refused(key, indexes, { error, job }) {
+    if (!this.#plan.absent.has(error.code)) return error
+    const known = { error, until: this.#clock.now() + REST }
+    this.#absent.set(key, known)
+    for (const index of indexes) this.#fail([index], this.#named(job.points[index], known), job)
     return error
+  }
+
+  #named({ text }, known) {
+    const { error } = known
+    if (error.details.address === text) return error
+    const details = { ...error.details, station: this.#station, address: text, cause: error }
+    return (known.error = new PlcError(error.code, details))
   }
 
   #fail(indexes, error, job) {
@@ -184,10 +184,9 @@ const cutAt = (sorted, middle, points) => {
 }
 
 /** A plan for some of the points, with their places in the whole. */
-const plan = (indexes, points, limits) =>
-  planReads(
-    indexes.map(index => points[index]),
-    limits
-  ).map(request => ({ ...request, points: request.points.map(each => ({ ...each, point: indexes[each.point] })) }))
+const planned = (indexes, points, plan) =>
+  plan
+    .reads(indexes.map(index => points[index]))
+    .map(request => ({ ...request, points: request.points.map(each => ({ ...each, point: indexes[each.point] })) }))
 
 module.exports = { Reader }

@@ -3,28 +3,15 @@ const { PlcError } = require('../error')
 const { masterIdList } = require('../codec/nx/ids')
 const { limitsOf } = require('../codec/nx/limits')
 const { nxNotation } = require('../tag/nx-notation')
+const { describeAddress } = require('../codec/nx/address')
+const { planReads, planWrites } = require('../plan')
+const { choice, isOn, nameOf, readRanges, wholeNumber } = require('./options')
 
 /** The configuration of an NX PLC, read and checked before anything is sent. */
 
 const LAST_STATION = 191
 const ANY_STATION = 255
 const GAP = 10 // ms: what the manual's own program waits before each Q and RR
-
-const blank = value => value === undefined || value === null || (typeof value === 'string' && value.trim() === '')
-
-const wholeNumber = (setting, value, { fallback, least, most }) => {
-  if (blank(value)) return fallback
-  const number = typeof value === 'string' ? Number(value) : value
-  if (Number.isInteger(number) && number >= least && number <= most) return number
-  throw new PlcError('BAD_SETTING', { setting, value, reason: `a whole number from ${least} to ${most} is needed` })
-}
-
-const choice = (setting, value, known) => {
-  if (blank(value)) return known[0]
-  const found = known.find(each => String(each) === String(value).trim())
-  if (found !== undefined) return found
-  throw new PlcError('BAD_SETTING', { setting, value, reason: `known are ${known.join(', ')}` })
-}
 
 /**
  * @param {unknown} value
@@ -59,18 +46,30 @@ const frameCost = ({ steps, gap, character }) => {
   return Math.round(frames + silence)
 }
 
-/** Spans of absolute bits that a message may write to. */
-const readRanges = (value, notation) => {
-  const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(',')
-  return given
-    .map(text => String(text).trim())
-    .filter(text => text !== '')
-    .map(text => {
-      const { kind, address, count } = notation.parse(text)
-      const size = kind === 'word' ? 16 : 1
-      return { start: address * size, end: (address + count) * size }
-    })
+const SPLITS = new Set(['PLC_OUT_OF_RANGE', 'PLC_FRAME_TOO_LONG'])
+const ABSENT = new Set(['PLC_OUT_OF_RANGE'])
+const UNKNOWN_FUNCTION = new Set(['PLC_WRONG_FUNCTION', 'PLC_NO_SERVICE'])
+
+/** How points become requests; a CPU without the mixed read is asked without it. @returns {import('./options').Plan} */
+const planOf = given => {
+  let limits = given
+  return {
+    reads: points => planReads(points, limits),
+    writes: points => planWrites(points, limits),
+    splits: SPLITS,
+    absent: ABSENT,
+    simpler: ({ ask }, { code }) => {
+      if (ask !== 'readMixed' || !UNKNOWN_FUNCTION.has(code)) return false
+      limits = { ...limits, readMixed: 0 }
+      return true
+    }
+  }
 }
+
+const REASONS = Object.freeze({
+  area: 'its area is unconfirmed or not for writing; confirm its row in the area table first',
+  throughWord: 'its area has only words: a single bit of it cannot be written'
+})
 
 /**
  * @param {Record<string, any>} given see `createNxPlc`
@@ -87,20 +86,23 @@ const readSettings = (given, character) => {
   const stations = [...(given.stations ?? []), station]
   const limits = limitsOf(given.limits)
   return {
+    protocol: 'nx',
     station,
     steps,
     gap,
-    name: blank(given.name) ? `station ${station}` : String(given.name).trim(),
+    name: nameOf(given.name, station),
     timeout: wholeNumber('timeout', given.timeout, { fallback: 3000, least: 10, most: 600000 }),
     attempts: wholeNumber('attempts', given.attempts, { fallback: 3, least: 1, most: 20 }),
     masterIds: masterIdList(markHex(given.masterIds), { stations }),
-    soleMaster: given.soleMaster === true || given.soleMaster === 'true',
+    soleMaster: isOn(given.soleMaster),
     access: choice('access', given.access, ['read', 'write']),
     ranges: readRanges(given.writableRanges, notation),
     deadline: wholeNumber('deadline', given.deadline, { fallback: 0, least: 0, most: 3600000 }),
     notation,
     limits,
-    planLimits: { ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) }
+    reasons: REASONS,
+    describe: (place, { write }) => describeAddress(place, { steps, write }),
+    plan: planOf({ ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) })
   }
 }
 

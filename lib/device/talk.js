@@ -1,5 +1,4 @@
 'use strict'
-const { PlcError } = require('../error')
 const { masterIds } = require('../codec/nx/ids')
 const { readDialog, writeDialog } = require('../codec/nx/dialog')
 const { createMasterWatch } = require('./master-watch')
@@ -154,10 +153,4 @@ const keyOf = query => {
   return `readMixed ${query.addresses.map(({ kind, address }) => `${kind[0]}${address}`).join(' ')}`
 }
 
-/** Errors that say nothing about the address asked for, but about station or line. */
-const isStationFailure = error => !String(error.code).startsWith('PLC_')
-
-const asPlcError = (error, station) =>
-  error instanceof PlcError ? error : new PlcError('BAD_ANSWER', { station, reason: error?.message, cause: error })
-
-module.exports = { Talk, asPlcError, isStationFailure, keyOf }
+module.exports = { Talk }

@@ -1,7 +1,8 @@
 'use strict'
 const { PlcError } = require('../error')
 const { PRIORITY } = require('../line')
-const { asPlcError } = require('./talk')
+const { asPlcError } = require('./failure')
+const { readBackOf, readBackValues } = require('./points')
 
 /**
  * Reads back what was confirmed or is unknown, and corrects its fate.
@@ -13,7 +14,7 @@ const verifyWritten = async ({ reader, station, points, fates }) => {
   if (last.length === 0) return
   const readings = await readBack(
     { reader, station },
-    last.map(index => points[index])
+    last.map(index => readBackOf(points[index]))
   )
   last.forEach((index, at) => {
     fates[index] = judge(fates[index], { ...points[index], station }, readings[at])
@@ -30,39 +31,46 @@ const readBack = async ({ reader, station }, points) => {
   }
 }
 
-/** Of the points that went out, those that no later one overwrites. */
+/** Of the points that went out, those that no later one overwrites. A word overlaps its sixteen bits. */
 const lastWritten = (points, fates) => {
-  const words = new Map()
-  const bits = new Map()
+  const words = new Set()
+  const bits = new Set()
+  const touched = new Set() // words of which bits were written
   const last = []
   for (let index = points.length - 1; index >= 0; index--) {
     const { outcome } = fates[index]
     if (outcome !== 'confirmed' && outcome !== 'unknown') continue
     const { kind, address, count } = points[index]
     const places = Array.from({ length: count }, (_, at) => address + at)
-    const free = place => (kind === 'word' ? !words.has(place) && !bits.has(place) : !words.has(place >> 4))
-    const clear = places.every(free) && (kind === 'word' || !bits.has(`b${address}`))
+    const free = place =>
+      kind === 'word' ? !words.has(place) && !touched.has(place) : !words.has(place >> 4) && !bits.has(place)
+    if (places.every(free)) last.unshift(index)
     for (const place of places) {
-      if (kind === 'word') words.set(place, index)
-      else bits.set(place >> 4, index).set(`b${place}`, index)
+      if (kind === 'word') words.add(place)
+      else {
+        bits.add(place)
+        touched.add(place >> 4)
+      }
     }
-    if (clear) last.unshift(index)
   }
   return last
 }
 
-const judge = (fate, { values, text, station }, reading) => {
+const shown = raw =>
+  raw.map(value => (typeof value === 'boolean' ? value : `${value.toString(16).toUpperCase()}h`)).join(' ')
+
+const judge = (fate, point, reading) => {
+  const { values, text, station } = point
   if ('error' in reading) {
     const reason = `it could not be read back: ${reading.error.code}`
     const details = { station, item: text, reason, cause: reading.error }
     return { outcome: 'unknown', error: new PlcError('WRITE_UNKNOWN', details) }
   }
-  if (values.every((value, index) => value === reading.raw[index])) return { outcome: 'confirmed' }
-  const shown = raw =>
-    raw.map(value => (typeof value === 'boolean' ? value : `${value.toString(16).toUpperCase()}h`)).join(' ')
+  const raw = readBackValues(point, reading.raw)
+  if (values.every((value, index) => value === raw[index])) return { outcome: 'confirmed' }
   const error = new PlcError('VERIFY_FAILED', {
     item: text,
-    got: shown(reading.raw),
+    got: shown(raw),
     expected: shown(values),
     cause: fate.error
   })

@@ -1,11 +1,11 @@
 'use strict'
-const { PlcError } = require('../error')
-const { planWrites } = require('../plan')
+const { PlcError, isRefusal } = require('../error')
 const { PRIORITY } = require('../line')
 const { encodeValue } = require('../tag/value')
 const { createGuard } = require('./guard')
 const { outcomeOf, unsent, wordFor } = require('./outcome')
-const { asPlcError } = require('./talk')
+const { asPlcError } = require('./failure')
+const { MOST_POINTS, widthOf, writePointsOf } = require('./points')
 const { verifyWritten } = require('./verify')
 
 /**
@@ -19,7 +19,6 @@ const { verifyWritten } = require('./verify')
  */
 
 const MOST_ENTRIES = 1000
-const MOST_POINTS = 20000
 
 const checkEntries = entries => {
   if (!Array.isArray(entries) || entries.length === 0) {
@@ -31,18 +30,12 @@ const checkEntries = entries => {
 }
 
 const checkPoints = entries => {
-  const count = entries.reduce((sum, { values }) => sum + values.length, 0)
+  const count = entries.reduce((sum, { item, values }) => sum + values.length * (item.packed ? widthOf(item) : 1), 0)
   if (count > MOST_POINTS) throw new PlcError('TOO_MANY', { count, unit: 'values to write', most: MOST_POINTS })
 }
 
-const pointsOf = ({ item, values }) =>
-  values.map((raw, index) => ({
-    kind: item.kind,
-    address: item.address + index * item.type.words,
-    values: raw,
-    count: raw.length,
-    text: item.elements[index].text
-  }))
+/** A broadcast is never confirmed: what comes after it goes out all the same. */
+const goesOn = error => !error || error.code === 'BROADCAST_UNCONFIRMED'
 
 class Writer {
   #talk
@@ -83,6 +76,7 @@ class Writer {
   #outcome(entries, options) {
     try {
       const prepared = this.#prepare(entries, options)
+      this.#settings.checkWrite?.(prepared, options)
       return options.coalesce ? this.#latest(prepared, options) : this.#carryOut({ prepared }, options)
     } catch (error) {
       const given = Array.isArray(entries) ? entries.slice(0, MOST_ENTRIES) : []
@@ -101,10 +95,10 @@ class Writer {
     checkPoints(parsed)
     for (const entry of parsed) {
       entry.from = points.length
-      points.push(...pointsOf(entry))
+      points.push(...writePointsOf(entry))
       entry.to = points.length
     }
-    return { entries: parsed, points, requests: planWrites(points, this.#settings.planLimits) }
+    return { entries: parsed, points, requests: this.#settings.plan.writes(points) }
   }
 
   #entry(entry, fixed) {
@@ -146,7 +140,7 @@ class Writer {
     const done = []
     let attempts = 0
     let error = null
-    for (let next = 0; next < job.prepared.requests.length && !error; next++) {
+    for (let next = 0; next < job.prepared.requests.length && goesOn(error); next++) {
       const take = () => {
         job.begin?.()
         const request = job.prepared.requests[next]
@@ -186,7 +180,7 @@ class Writer {
   /** What the line broke off after a byte of it went out may have been carried out. */
   #meaning(error, item) {
     const { code, details } = error
-    if (code === 'WRITE_UNKNOWN' || code.startsWith('PLC_') || details.sent !== true) return error
+    if (code === 'WRITE_UNKNOWN' || isRefusal(error) || details.sent !== true) return error
     return new PlcError('WRITE_UNKNOWN', { station: this.#settings.station, item, reason: code, cause: error })
   }
 }

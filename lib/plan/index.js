@@ -1,5 +1,6 @@
 'use strict'
 const { planReads } = require('./reads')
+const { planTableWrites, planTables } = require('./tables')
 const { planWrites } = require('./writes')
 
-module.exports = { planReads, planWrites }
+module.exports = { planReads, planTableWrites, planTables, planWrites }

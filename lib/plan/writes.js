@@ -90,6 +90,9 @@ const planRound = (points, limits) => {
   return [...own.map(block => ownRequest(block, valueAt)), ...shared.map(parts => sharedRequest(parts, valueAt))]
 }
 
+/** Requests of rounds, which are not to be mixed. @returns {WriteRequest[]} */
+const planRounds = (rounds, limits) => rounds.flatMap(round => planRound(round, limits))
+
 /**
  * As few requests as possible that write every point: what belongs together in one frame, what has the same target never
  * in another order than given. Manual: "Write bits", "Write words", "Write bits and words".
@@ -98,6 +101,6 @@ const planRound = (points, limits) => {
  * @returns {WriteRequest[]} to be sent in this order
  * @throws {import('../error').PlcError} FRAME_TOO_LONG one value does not fit into one frame
  */
-const planWrites = (points, limits) => roundsOf(points).flatMap(round => planRound(round, limits))
+const planWrites = (points, limits) => planRounds(roundsOf(points), limits)
 
-module.exports = { planWrites }
+module.exports = { planRounds, planWrites, roundsOf }

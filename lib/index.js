@@ -9,8 +9,9 @@ const { PRIORITY, createPool, lineSettings, listPorts } = require('./line')
 const { createNxPlc } = require('./device/nx-plc')
 const { openNxPlc } = require('./device/open')
 const { createThrottle } = require('./device/throttle')
-const { tagsFromCsv, tagsToCsv } = require('./tag/csv')
+const { csvWarnings, tagsFromCsv, tagsToCsv } = require('./tag/csv')
 const { parseItem } = require('./tag/item')
+const { modbusNotation } = require('./tag/modbus-notation')
 const { nxNotation } = require('./tag/nx-notation')
 const { parseType } = require('./tag/types')
 const { createReport } = require('./output/report')
@@ -26,6 +27,7 @@ module.exports = {
   createPool,
   createReport,
   createThrottle,
+  csvWarnings,
   describeAddress,
   entriesOf,
   formatAddress,
@@ -33,6 +35,7 @@ module.exports = {
   lineSettings,
   listPorts,
   messagesOf,
+  modbusNotation,
   nxNotation,
   openNxPlc,
   parseAddress,

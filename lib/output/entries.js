@@ -48,11 +48,17 @@ const entriesOf = (msg, { target = '' } = {}) => {
   if (isPairs(payload)) return pairsOf(payload)
   const topic = own(msg, 'topic')
   if (typeof topic !== 'string' || topic.trim() === '') {
-    throw new PlcError('NOTHING_TO_WRITE', { reason: 'no target, no object as payload, no item as topic' })
+    const reason = 'no target, no object as payload, no item as topic'
+    throw new PlcError('NOTHING_TO_WRITE', {
+      reason: typeof topic === 'number' ? inQuotes('the topic', topic) : reason
+    })
   }
   if (topic.length > LONGEST) throw new PlcError('NOTHING_TO_WRITE', { reason: 'the topic is too long for an item' })
   return [checkValue(topic.trim(), payload)]
 }
+
+/** A MODBUS address as a number has lost its zeros: 010197 is another one than 10197. */
+const inQuotes = (what, number) => `${what} is the number ${number}; write the address in quotes`
 
 const pairsOf = payload => {
   const names = Object.keys(payload)
@@ -79,6 +85,7 @@ const itemsOf = given => {
   if (list.length === 0) throw bad('it is empty')
   if (list.length > MOST_ITEMS) throw new PlcError('TOO_MANY', { count: list.length, unit: 'items', most: MOST_ITEMS })
   return Array.from(list, (text, index) => {
+    if (typeof text === 'number') throw bad(inQuotes(`entry ${index + 1}`, text))
     if (typeof text !== 'string') throw bad(`number ${index + 1} is no text`)
     if (text.trim() === '') throw bad(`number ${index + 1} is empty`)
     if (text.length > LONGEST) throw bad(`number ${index + 1} is too long`)

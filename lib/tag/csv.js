@@ -65,6 +65,19 @@ const tagsFromCsv = text => {
   })
 }
 
+/**
+ * What a spreadsheet may have eaten of the addresses of a table (`010197` without its zero is another address), for the user to look at.
+ * @param {ReadonlyArray<Record<string, any>>} rows as from {@link tagsFromCsv}
+ * @param {Pick<import('./item').Notation, 'doubts'>} notation of the station
+ * @returns {{ name: string, address: string, text: string }[]} empty for stations whose addresses no spreadsheet takes for numbers
+ */
+const csvWarnings = (rows, notation) =>
+  rows.flatMap(row => {
+    const { name = '', address = '' } = row ?? {}
+    const texts = notation.doubts?.(row ?? {}) ?? []
+    return texts.map(text => ({ name: String(name), address: String(address), text }))
+  })
+
 const cellOf = value => {
   const text = value === null || value === undefined ? '' : String(value)
   return /[",;\t\r\n]|^\s|\s$/.test(text) ? `"${text.replaceAll('"', '""')}"` : text
@@ -81,4 +94,4 @@ const tagsToCsv = (tags, { separator = ',' } = {}) => {
   return `\uFEFF${lines.map(cells => cells.map(cellOf).join(separator)).join('\r\n')}\r\n`
 }
 
-module.exports = { tagsFromCsv, tagsToCsv }
+module.exports = { csvWarnings, tagsFromCsv, tagsToCsv }

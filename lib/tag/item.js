@@ -13,11 +13,15 @@ const { parseType } = require('./types')
  * @property {string} text canonical: `K127.12`
  * @property {boolean} writable whether the area may be written
  * @property {object} [throughWord] the station offers this bit only as part of its word
+ * @property {'panel'|'explicit'} [style] how it was written, where there are several ways
  *
  * @typedef {object} Notation how addresses are written for this station
  * @property {(text: string) => Address} parse throws BAD_ADDRESS, UNKNOWN_AREA, OUT_OF_AREA, BAD_BIT
- * @property {(at: { kind: 'bit'|'word', address: number }) => string} format absolute -> canonical text
+ * @property {(at: { kind: 'bit'|'word', address: number, style?: 'panel'|'explicit' }) => string} format absolute -> canonical text
  * @property {(address: Address) => number} last absolute address of the last word (or bit) of its area
+ * @property {(address: Address) => boolean} [packs] whether numbers may stand on bits: sixteen or thirty-two from there, the lowest one is bit 0
+ * @property {(row: Record<string, any>) => string[]} [doubts] what a spreadsheet may have done to an address
+ * @property {string} [example] of an address, for texts
  * @property {Map<string, import('./tags').Tag>} [tags]
  * @property {'low'|'high'} [wordOrder]
  * @property {'low'|'high'} [byteOrder]
@@ -33,6 +37,8 @@ const { parseType } = require('./types')
  * @property {boolean} range its value is an array
  * @property {Type} type
  * @property {boolean} throughWord a bit that is read through its word
+ * @property {boolean} packed a number on bits: a value takes 16 × `type.words` of them
+ * @property {'panel'|'explicit'} [style] how its address was written
  * @property {'low'|'high'} wordOrder
  * @property {'low'|'high'} byteOrder
  * @property {import('./tags').Tag|null} tag
@@ -56,38 +62,51 @@ const keyOf = text => {
   return /^[A-Za-z_]/.test(key) ? key : `_${key}`
 }
 
-const typeFor = (text, address, typeText) => {
-  const type = parseType(typeText || (address.kind === 'bit' ? 'bool' : 'uint16'))
+const plainType = kind => (kind === 'bit' ? 'bool' : 'uint16')
+
+const typeFor = (text, { address, typeText, notation }) => {
+  const type = parseType(typeText || plainType(address.kind))
   if (type.kind === address.kind) return type
+  const packs = address.kind === 'bit' && Boolean(notation.packs?.(address))
+  if (packs && type.numeric) return type
+  const known = packs ? 'bool and all numbers' : address.kind === 'bit' ? 'bool' : 'all but bool'
   const reason = address.kind === 'bit' ? `${text} is a bit, which is bool` : `${text} is a word, bool needs a bit`
-  throw new PlcError('BAD_TYPE', { type: type.name, reason, known: address.kind === 'bit' ? 'bool' : 'all but bool' })
+  throw new PlcError('BAD_TYPE', { type: type.name, reason: packs ? `${text} is a bit` : reason, known })
 }
+
+const isPacked = ({ kind }, type) => kind === 'bit' && type.kind === 'word'
+
+/** Addresses that one value takes. */
+const widthOf = (address, type) => (isPacked(address, type) ? 16 * type.words : type.words)
 
 /** How many values of a type stand at the address; a single one may be longer than the word that is written. */
 const countOf = (text, { address, type, notation }) => {
   const range = address.count > 1
-  if (range && address.count % type.words !== 0) {
+  const width = widthOf(address, type)
+  const unit = address.kind === 'bit' ? 'bits' : 'words'
+  if (range && address.count % width !== 0) {
     throw new PlcError('BAD_TYPE', {
       type: type.name,
-      reason: `${text} has ${address.count} words, which is no multiple of ${type.words}`,
-      known: `ranges of a multiple of ${type.words} words`
+      reason: `${text} has ${address.count} ${unit}, which is no multiple of ${width}`,
+      known: `ranges of a multiple of ${width} ${unit}`
     })
   }
-  const end = address.address + (range ? address.count : type.words) - 1
+  const end = address.address + (range ? address.count : width) - 1
   if (end > notation.last(address)) {
     throw new PlcError('OUT_OF_AREA', {
       address: text,
       area: address.text,
-      range: `${notation.last(address) - address.address + 1} words from there, ${type.name} takes ${type.words}`
+      range: `${notation.last(address) - address.address + 1} ${unit} from there, ${type.name} takes ${width}`
     })
   }
-  return { range, count: range ? address.count / type.words : 1 }
+  return { range, count: range ? address.count / width : 1 }
 }
 
 const elementsOf = (item, notation) => {
   if (!item.range) return [{ name: item.name, text: item.tag ? item.name : item.addressText }]
   return Array.from({ length: item.count }, (_, index) => {
-    const text = notation.format({ kind: item.kind, address: item.address + index * item.type.words })
+    const { kind, style } = item
+    const text = notation.format({ kind, style, address: item.address + index * widthOf(item, item.type) })
     return { name: item.tag ? `${item.name}_${index}` : keyOf(text), text }
   })
 }
@@ -112,7 +131,7 @@ const tagged = (tag, notation) => ({
 const parseExpression = (expression, notation, { tag, text = expression } = {}) => {
   const [addressText, written] = splitType(expression.trim())
   const address = notation.parse(addressText.trim())
-  const type = typeFor(expression, address, written || tag?.type)
+  const type = typeFor(expression, { address, typeText: written || tag?.type, notation })
   const item = {
     text,
     name: tag ? tag.name : keyOf(address.text),
@@ -122,6 +141,8 @@ const parseExpression = (expression, notation, { tag, text = expression } = {}) 
     ...countOf(expression, { address, type, notation }),
     type,
     throughWord: Boolean(address.throughWord),
+    packed: isPacked(address, type),
+    ...(address.style && { style: address.style }),
     areaWritable: address.writable,
     ...tagged(tag, notation)
   }
@@ -147,7 +168,10 @@ const withElements = (item, notation) => {
  */
 const parseItem = (text, notation) => {
   if (typeof text !== 'string' || text.trim() === '') {
-    throw new PlcError('BAD_ITEMS', { reason: 'an item is a text such as M0 or a tag name' })
+    const hint = typeof text === 'number' ? `, not the number ${text}: write the address in quotes` : ''
+    throw new PlcError('BAD_ITEMS', {
+      reason: `an item is a text such as ${notation.example ?? 'M0'} or a tag name${hint}`
+    })
   }
   if (text.length > LONGEST) {
     throw new PlcError('BAD_ADDRESS', {
@@ -181,7 +205,7 @@ const clashes = items => {
 const distinctNames = items => {
   const shared = clashes(items)
   if (shared.size === 0) return items
-  const plain = item => item.tag || item.type.name === 'uint16' || item.type.name === 'bool' || !shared.has(item.name)
+  const plain = item => item.tag || item.type.name === plainType(item.kind) || !shared.has(item.name)
   const suffix = item => `_${keyOf(item.type.name).replace(/_$/, '')}`
   const renamed = items.map(item =>
     plain(item)

@@ -214,7 +214,7 @@ function checkWrites(frames) {
   if (frames.length === 0) throw new PlcError('NOTHING_TO_WRITE', { reason: 'there is no frame' })
 }
 
-function checkBroadcast(write, { broadcast }) {
+function checkBroadcast(write, /** @type {Options} */ { broadcast }) {
   if ('bits' in write) throw broadcastRefused('a bit of a register', 'the register would have to be read first')
   if (!broadcast) throw broadcastRefused('a write', 'it is not allowed here')
 }

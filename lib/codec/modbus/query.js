@@ -148,7 +148,7 @@ function decodeQuery(frame) {
   const row = functionByNumber(fn)
   if (!row) return { station, fn, exception: 1 }
   const info = frame.subarray(2, frame.length - 2)
-  const query = info.length < 4 ? null : READ[row.request](fn, info, row)
+  const query = info.length < 4 ? null : /** @type {Query} */ (READ[row.request](fn, info, row))
   return query ? { station, query } : { station, fn, exception: 3 }
 }
 

@@ -94,7 +94,7 @@ function createBehaviour(row, { address, target = () => 0 }) {
   const every = row.every ?? 10
   if (typeof kind === 'function') {
     // a function that keeps a state of its own (heating.js) says so: it is asked for the present only
-    if (row.pure === false) return { at: kind, every, pure: false }
+    if (row.pure === false) return { at: t => kind(t, address), every, pure: false }
     return { at: t => kind(floor(t / every) * every, address), every, pure: true }
   }
   if (!Object.hasOwn(KINDS, kind)) {

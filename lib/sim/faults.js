@@ -3,6 +3,7 @@
 const { PlcError } = require('../error')
 const { createRandom } = require('./random')
 
+const NX_ERRORS = 5
 const span = (least, most) => random => random.integer(least, most)
 const whole = context => [{ bytes: context.bytes }]
 
@@ -12,7 +13,8 @@ const KINDS = {
   lost: { text: 'the query is not heard' },
   silent: { text: 'the query is carried out, the answer is lost', answer: () => [] },
   off: { text: 'the station is dark for n ms (2000)', argument: 2000, least: 1, most: 1e6 },
-  error: { text: 'error number n (4) instead of the answer', argument: 4, least: 1, most: 5, answer: whole },
+  // the highest number is the protocol's: `errors` below
+  error: { text: 'error number n (4) instead of the answer', argument: 4, least: 1, answer: whole },
   late: { text: 'the answer is n ms late (100..900)', argument: span(100, 900), least: 0, most: 1e6, answer: late },
   crc: { text: 'n bits of the answer are flipped (1..3)', argument: span(1, 3), least: 1, most: 100, answer: damaged },
   truncated: {
@@ -69,9 +71,8 @@ function twice({ bytes, argument }) {
   return [{ bytes }, { bytes, after: argument }]
 }
 
-function foreign({ bytes, station, random }) {
-  const other = (station.station + random.integer(1, 7)) % 192
-  return [{ bytes: station.disguise(bytes, other, random) }, { bytes }]
+function foreign({ bytes, station, random, taken }) {
+  return [{ bytes: station.disguise(bytes, { random, taken }) }, { bytes }]
 }
 
 function noiseBefore({ bytes, argument, random }) {
@@ -93,7 +94,8 @@ function merged({ bytes, previous }) {
 /**
  * What goes out instead of an answer.
  * @param {string} kind
- * @param {{ bytes: Buffer, previous: Buffer | null, request: Buffer, station: any, random: import('./random').Random, argument: any }} context
+ * @param {{ bytes: Buffer, previous: Buffer | null, request: Buffer, station: any, random: import('./random').Random, argument: any,
+ *   taken: number[] }} context taken: the stations on the wire
  * @returns {{ bytes: Buffer, after?: number }[]} after: ms later than the answer would have started
  */
 const applyFault = (kind, context) => KINDS[kind].answer(context)
@@ -101,11 +103,11 @@ const applyFault = (kind, context) => KINDS[kind].answer(context)
 /**
  * The faults of a wire: each answer suffers at most one, drawn from a seed or ordered beforehand.
  *
- * @param {{ random?: import('./random').Random, rates?: Fault[] }} [options]
+ * @param {{ random?: import('./random').Random, rates?: Fault[], errors?: number }} [options] errors: highest number of an error
  * @returns {Faults}
  * @throws {PlcError} BAD_SETTING
  */
-function createFaults({ random = createRandom(1), rates = [] } = {}) {
+function createFaults({ random = createRandom(1), rates = [], errors = NX_ERRORS } = {}) {
   /** @type {Map<string, { rate: number, argument?: number }>} */
   const active = new Map()
   /** @type {Record<string, number>} */
@@ -121,13 +123,13 @@ function createFaults({ random = createRandom(1), rates = [] } = {}) {
   }
   const set = (kind, rate, argument) => {
     const others = [...active].reduce((sum, [name, each]) => sum + (name === kind ? 0 : each.rate), 0)
-    check({ kind, rate, argument }, others)
+    check({ kind, rate, argument }, { others, errors })
     if (rate > 0) active.set(kind, { rate, argument })
     else active.delete(kind)
   }
   /** @type {Faults['once']} */
   const once = (kind, { argument, station, times = 1, skip = 0 } = {}) => {
-    check({ kind, rate: 0, argument }, 0)
+    check({ kind, rate: 0, argument }, { others: 0, errors })
     ordered.push({ kind, argument, station, times, skip })
   }
   const draw = station => {
@@ -164,16 +166,16 @@ function pick(active, share) {
 
 /**
  * @param {Fault} fault
- * @param {number} others sum of the other rates
+ * @param {{ others: number, errors: number }} context others: sum of the other rates; errors: highest number of an error
  */
-function check({ kind, rate, argument }, others) {
+function check({ kind, rate, argument }, { others, errors }) {
   const value = [kind, rate, argument].filter(each => each !== undefined && !Number.isNaN(each)).join(':')
   const refuse = reason => new PlcError('BAD_SETTING', { setting: 'fault', value, reason })
   if (!Object.hasOwn(KINDS, kind)) throw refuse(`known faults are ${Object.keys(KINDS).join(', ')}`)
   if (!(rate >= 0 && rate <= 1)) throw refuse('the rate must be a number from 0 to 1, as in late:0.02')
   if (rate + others > 1 + 1e-9) throw refuse('the rates add up to more than 1')
   if (argument === undefined) return
-  const { least, most } = KINDS[kind]
+  const { least, most = errors } = KINDS[kind]
   if (least === undefined) throw refuse(`${kind} takes a rate alone`)
   if (!Number.isInteger(argument) || argument < least || argument > most) {
     throw refuse(`the number after the rate must be a whole one from ${least} to ${most}`)
@@ -183,10 +185,11 @@ function check({ kind, rate, argument }, others) {
 /**
  * Reads `late:0.02,crc:0.01,error:0.05:2`: kind, rate 0..1, and, where the kind has one, a number.
  * @param {string} text '' = none
+ * @param {{ errors?: number }} [options] highest number of an error: 5 for NX (default), 255 for MODBUS
  * @returns {Fault[]}
  * @throws {PlcError} BAD_SETTING
  */
-function parseFaults(text) {
+function parseFaults(text, { errors = NX_ERRORS } = {}) {
   const parts = text
     .split(',')
     .map(part => part.trim())
@@ -203,7 +206,7 @@ function parseFaults(text) {
       })
     }
     const fault = { kind, rate: number(rate), argument: argument === undefined ? undefined : number(argument) }
-    check(fault, sum)
+    check(fault, { others: sum, errors })
     sum += fault.rate
     return fault
   })

@@ -7,10 +7,10 @@ const { limitsOf } = require('../codec/nx/limits')
 const { answerInfoLength, decodeQuery } = require('../codec/nx/query')
 const { createMemory } = require('./nx-memory')
 const { createNxReceiver } = require('./nx-receiver')
-const { PlcError } = require('../error')
+const { checkStation, createStation, emptyCounts, noteWrite, turnaroundOf } = require('./station')
 
 const GLOBAL_STATION = 255
-const LAST_STATION = 191
+const STATIONS = { least: 0, most: 191, what: 'a PLC' }
 const ERROR = { FUNCTION: 1, RANGE: 2, STRUCTURE: 3, NOT_PERFORMED: 4, TOO_LONG: 5 }
 
 /**
@@ -36,27 +36,13 @@ const ERROR = { FUNCTION: 1, RANGE: 2, STRUCTURE: 3, NOT_PERFORMED: 4, TOO_LONG:
  */
 function createNxPlc(settings) {
   const plc = prepare(settings)
-  const receiver = createNxReceiver({ gap: plc.gap, isMine: to => isMine(plc, to), counts: plc.counts })
-  const answer = createAnswerer(plc)
-  return {
-    station: plc.station,
-    memory: plc.memory,
-    get: plc.memory.get,
-    set: plc.memory.set,
-    heldBetween: plc.memory.heldBetween,
-    counts: plc.counts,
-    writes: plc.writes,
-    receive: (bytes, times) =>
-      receiver(bytes, times)
-        .filter(frame => isForMe(plc, frame))
-        .map(frame => ({
-          request: frame.bytes,
-          turnaround: plc.turnaround(),
-          answer: refuse => answer(frame, refuse)
-        })),
-    disguise: (bytes, station, random) => disguise(bytes, station, random),
-    setMode: mode => void (plc.mode = mode)
-  }
+  const station = createStation(plc, {
+    receiver: createNxReceiver({ gap: plc.gap, isMine: to => isMine(plc, to), counts: plc.counts }),
+    isForMe: frame => isForMe(plc, frame),
+    answer: createAnswerer(plc),
+    disguise
+  })
+  return { ...station, setMode: mode => void (plc.mode = mode) }
 }
 
 /** The answer to a frame that has come in, computed when the PLC gets to it; null: silence. */
@@ -82,12 +68,9 @@ function createAnswerer(plc) {
 }
 
 function prepare(settings) {
-  const { station, clock, random, turnaround = 2, limits = {}, protect = [] } = settings
-  if (!Number.isInteger(station) || station < 0 || station > LAST_STATION) {
-    throw new PlcError('BAD_STATION', { station, reason: 'a PLC has a number from 0 to 191' })
-  }
+  const { station, clock, limits = {}, protect = [] } = settings
+  checkStation(station, STATIONS)
   const memory = createMemory({ ...settings, now: clock.now })
-  const [least, most] = Array.isArray(turnaround) ? turnaround : [turnaround, turnaround]
   return {
     steps: 'both',
     mode: 'run',
@@ -97,10 +80,11 @@ function prepare(settings) {
     gap: 4,
     ...settings,
     limits: limitsOf({ writeWords: 127, ...limits }),
-    turnaround: () => (random && most > least ? least + random.next() * (most - least) : least),
+    station: Number(station),
+    turnaround: turnaroundOf(settings),
     protectedWords: protectedWords(protect, memory.areas),
     memory,
-    counts: { queries: 0, executed: 0, errors: 0, badCrc: 0, foreign: 0, strayBytes: 0 },
+    counts: emptyCounts(),
     writes: new Map()
   }
 }
@@ -172,8 +156,7 @@ function execute({ memory, writes, counts }, query) {
   for (const { kind, address, value } of places) {
     if (kind === 'bit') memory.writeBit(address, value)
     else memory.writeWord(address, value)
-    const key = `${kind}:${address}`
-    writes.set(key, (writes.get(key) ?? 0) + 1)
+    noteWrite(writes, `${kind}:${address}`)
   }
   return true
 }
@@ -185,11 +168,11 @@ function acknowledged({ printedAck }, query, { values, ends }) {
 
 const isBit = byte => byte === 0x00 || byte === 0xff
 
-/** The same answer as another station would send it: right in form, other data. */
-function disguise(bytes, station, random) {
+/** Like another station's answer, perhaps one that is on the line: an NX frame tells a query from an answer. */
+function disguise(bytes, { random }) {
   const copy = Buffer.from(bytes)
   const end = copy.length - 2
-  copy[1] = station
+  copy[1] = (copy[1] + random.integer(1, 7)) % (STATIONS.most + 1)
   // one byte of INFO is an acknowledgement or an error: it stays
   for (let n = 4; n < end && end > 5; n++) copy[n] = isBit(copy[n]) ? random.pick([0x00, 0xff]) : random.integer(1, 254)
   copy.writeUInt16LE(crc16(copy, 0, end), end)
@@ -197,19 +180,8 @@ function disguise(bytes, station, random) {
 }
 
 /**
- * @typedef {object} NxPlc
- * @property {number} station
- * @property {import('./nx-memory').Memory} memory
- * @property {(text: string, type?: string) => number | boolean} get `get('W10', 'float32')`
- * @property {(text: string, value: number | boolean, type?: string) => void} set
- * @property {(word: number, from: number, to: number) => number[]} heldBetween see nx-memory.js
- * @property {{ queries: number, executed: number, errors: number, badCrc: number, foreign: number, strayBytes: number }} counts
- * @property {Map<string, number>} writes how often each `word:447`, `bit:7164` was written
- * @property {(bytes: Buffer, times: { start: number, end: number }) => Job[]} receive bytes heard on the wire between two times
- * @property {(bytes: Buffer, station: number, random: import('./random').Random) => Buffer} disguise
- * @property {(mode: 'run'|'program') => void} setMode
- * @typedef {{ request: Buffer, turnaround: number, answer: (refuse?: number) => Buffer | null }} Job `answer` carries the query out, or refuses it with
- *   an error number; null: silence
+ * @typedef {import('./station').Station & { memory: import('./nx-memory').Memory, setMode: (mode: 'run'|'program') => void }} NxPlc
+ *   `get('W10', 'float32')`; `writes` by `word:447`, `bit:7164`
  */
 
 module.exports = { createNxPlc }

@@ -19,7 +19,7 @@ const EMPTY = Buffer.alloc(0)
  * @returns {(bytes: Buffer, times: { start: number, end: number }) => Frame[]} complete frames, whoever they are for; `start`
  *   and `end` are when the bytes were on the wire, in ms
  */
-function createReceiver({ gap, shortest, lengthAt, decodeAt, isMine, counts }) {
+function createReceiver({ gap, counts, ...form }) {
   /** @type {Buffer} */
   let held = EMPTY
   let heardUntil = -Infinity
@@ -31,25 +31,18 @@ function createReceiver({ gap, shortest, lengthAt, decodeAt, isMine, counts }) {
     held = held.subarray(count)
     aligned = false
   }
-  /** Where a complete frame for this station stands inside what looks like a longer one; 0: nowhere. */
-  const hidden = () => {
-    for (let at = 1; at <= held.length - shortest; at++) {
-      if (isMine(held[at]) && decodeAt(held, at, false)) return at
-    }
-    return 0
-  }
   /** The next frame, or null while more bytes are needed. */
   const next = () => {
-    while (held.length >= shortest) {
-      const frame = decodeAt(held, 0, aligned)
+    while (held.length >= form.shortest) {
+      const frame = form.decodeAt(held, 0, aligned)
       if (frame) {
         held = held.subarray(frame.bytes.length)
         aligned = true
         return frame
       }
-      const whole = held.length >= lengthAt(held, 0)
+      const whole = held.length >= form.lengthAt(held, 0)
       damaged = damaged || whole
-      const at = whole ? 1 : hidden()
+      const at = whole ? 1 : hidden(held, form)
       if (at === 0) return null
       forget(at)
     }
@@ -68,6 +61,14 @@ function createReceiver({ gap, shortest, lengthAt, decodeAt, isMine, counts }) {
     if (damaged) counts.badCrc++
     return frames
   }
+}
+
+/** Where a complete frame for this station stands inside what looks like a longer one; 0: nowhere. */
+function hidden(held, { shortest, isMine, decodeAt }) {
+  for (let at = 1; at <= held.length - shortest; at++) {
+    if (isMine(held[at]) && decodeAt(held, at, false)) return at
+  }
+  return 0
 }
 
 module.exports = { createReceiver }

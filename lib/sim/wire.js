@@ -35,7 +35,7 @@ function createWire(options) {
     counts: wire.counts,
     add: station => void wire.parties.add(createParty(wire, station)),
     remove: number => partiesOf(wire, number).forEach(party => wire.parties.delete(party)),
-    stations: () => [...wire.parties].filter(({ station }) => station).map(({ station }) => station),
+    stations: () => stationsOf(wire),
     setOff: (number, off) => partiesOf(wire, number).forEach(party => (party.off = off)),
     connect: handlers => connect(wire, handlers),
     noise: bytes => transmit(wire, { busyUntil: 0 }, { bytes, at: wire.clock.now() }),
@@ -53,6 +53,8 @@ function createWire(options) {
 
 const idleAt = ({ active }) => active.reduce((latest, { end }) => Math.max(latest, end), 0)
 
+const stationsOf = ({ parties }) => [...parties].filter(({ station }) => station).map(({ station }) => station)
+const numbersOf = wire => stationsOf(wire).map(({ station }) => station)
 const partiesOf = (wire, number) => [...wire.parties].filter(({ station }) => station?.station === number)
 
 /** A station on the wire: hears bytes, answers after its turnaround, through the faults. */
@@ -82,7 +84,9 @@ function serve(wire, party, job) {
     const { previous } = party
     party.previous = bytes
     if (!fault) return transmit(wire, party, { bytes, at: due })
-    const context = { bytes, previous, request: job.request, station: party.station, random, argument: fault.argument }
+    const { station } = party
+    const taken = numbersOf(wire)
+    const context = { bytes, previous, request: job.request, station, random, argument: fault.argument, taken }
     for (const piece of applyFault(fault.kind, context)) later(wire, party, piece)
   }
   clock.setTimer(answer, due - clock.now(), { quiet: true })
@@ -174,7 +178,7 @@ function arrive(wire, sending) {
  * @typedef {object} Wire
  * @property {number} byteMs wire time of one byte
  * @property {{ frames: number, bytes: number, collisions: number }} counts
- * @property {(station: any) => void} add a station (nx-plc.js)
+ * @property {(station: any) => void} add a station (nx-plc.js, chino-regulator.js)
  * @property {(number: number) => void} remove what it still has to answer goes out
  * @property {() => any[]} stations
  * @property {(number: number, off: boolean) => void} setOff a station without power

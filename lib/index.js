@@ -6,8 +6,10 @@ const { CODES, PlcError } = require('./error')
 const { areaMap } = require('./codec/nx/areas')
 const { describeAddress, formatAddress, parseAddress } = require('./codec/nx/address')
 const { PRIORITY, createPool, lineSettings, listPorts } = require('./line')
+const { createChinoRegulator } = require('./device/chino-regulator')
+const { mixedConflict } = require('./device/mixed')
 const { createNxPlc } = require('./device/nx-plc')
-const { openNxPlc } = require('./device/open')
+const { openChinoRegulator, openNxPlc } = require('./device/open')
 const { createThrottle } = require('./device/throttle')
 const { csvWarnings, tagsFromCsv, tagsToCsv } = require('./tag/csv')
 const { parseItem } = require('./tag/item')
@@ -23,6 +25,7 @@ module.exports = {
   PRIORITY,
   PlcError,
   areaMap,
+  createChinoRegulator,
   createNxPlc,
   createPool,
   createReport,
@@ -35,8 +38,10 @@ module.exports = {
   lineSettings,
   listPorts,
   messagesOf,
+  mixedConflict,
   modbusNotation,
   nxNotation,
+  openChinoRegulator,
   openNxPlc,
   parseAddress,
   parseItem,

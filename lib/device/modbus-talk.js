@@ -1,0 +1,152 @@
+'use strict'
+const { PlcError, isRefusal } = require('../error')
+const { placeOf } = require('../codec/modbus/address')
+const { describeQuery } = require('../codec/modbus/answer')
+const { readDialog, writeDialog } = require('../codec/modbus/dialog')
+const { readFunction, writeFunction } = require('../codec/modbus/functions')
+const { exchange } = require('./modbus-exchange')
+
+/**
+ * Requests of a MODBUS station over the line: absolute addresses -> what goes out, by the functions that its configuration chooses. What must
+ * survive a redeploy lies in the line's memory of the station.
+ */
+
+const LEAST_GAP = 1.75 // ms: the fixed silence above 19200 bit/s (MODBUS over serial line, 2.5.1.1); below, 3.5 characters are longer
+const MOST_EXACT = 1000
+
+const memoryOf = (lease, station) => {
+  const memory = lease.line.memory(station)
+  memory.modbus ??= { exact: new Set() }
+  return memory.modbus
+}
+
+/** @param {{ framing: string, sendWait: number }} settings @param {number} character ms */
+const gapOf = ({ framing, sendWait }, character) =>
+  framing === 'rtu' ? Math.max(sendWait, LEAST_GAP, 3.5 * character) : sendWait
+
+const KINDS = { readBits: 'bit', readWords: 'word', writeBits: 'bit', writeWords: 'word', writeBitsOfWord: 'word' }
+const wireOf = ({ ask, base }) => placeOf(KINDS[ask], base)
+
+/** The frame that reads, as a query of the codec. */
+const readQuery = request => {
+  const { table, wire } = wireOf(request)
+  return /** @type {any} */ ({ fn: readFunction(table), base: wire, count: request.count })
+}
+
+const isSingle = (chosen, count) => chosen === '05' || chosen === '06' || (chosen === 'auto' && count === 1)
+
+/** What writes, as the codec's dialog takes it. @returns {import('../codec/modbus/dialog').Write} */
+const writeOf = (request, functions) => {
+  const { table, wire } = wireOf(request)
+  const chosen = functions[table]
+  if (request.ask === 'writeBitsOfWord') {
+    const { mask, value } = request
+    return { bits: { base: wire, mask, value }, single: isSingle(chosen, 1) }
+  }
+  const { values } = request
+  const single = isSingle(chosen, values.length)
+  const fn = writeFunction(table, { single })
+  const frames = single ? values.map((value, at) => ({ fn, base: wire + at, value })) : [{ fn, base: wire, values }]
+  return { frames: /** @type {any} */ (frames) }
+}
+
+class ModbusTalk {
+  #lease
+  #settings
+  #memory
+  #counts = { requests: 0, answers: 0, exceptions: 0, broadcasts: 0 }
+
+  /** @param {{ lease: any, settings: any }} options */
+  constructor({ lease, settings }) {
+    this.#lease = lease
+    this.#settings = settings
+    this.#memory = memoryOf(lease, settings.station)
+  }
+
+  /** `{ requests, answers, exceptions, broadcasts }` */
+  get counts() {
+    return { ...this.#counts }
+  }
+
+  /**
+   * @param {any} request `readBits` or `readWords` of the plan
+   * @param {{ priority: number }} options
+   * @returns {Promise<(boolean|number)[]>} raw values in order
+   * @throws {PlcError} (rejects) MODBUS_…, TIMEOUT, INCOMPLETE, CRC_ERROR, BAD_ANSWER, those of the line
+   */
+  async read(request, { priority }) {
+    const { station, deadline, framing } = this.#settings
+    const key = `modbus ${framing} ${request.ask} ${request.base} ${request.count}`
+    const label = `${request.ask} ${request.base} ${request.count}`
+    return this.#lease.run(() => this.#reading(request), { station, priority, key, deadline, label })
+  }
+
+  /**
+   * @param {() => { query: any, item: string, name?: string }} take called when its turn has come: the latest value goes out
+   * @param {{ priority: number }} options
+   * @returns {Promise<true>}
+   * @throws {PlcError} (rejects) MODBUS_…, WRITE_UNKNOWN, BROADCAST_UNCONFIRMED; `details.sent` of others: whether a frame that writes went out
+   */
+  async write(take, { priority }) {
+    const { station, deadline } = this.#settings
+    const facts = { writes: 0 }
+    const make = () => this.#writing(take(), facts)
+    try {
+      return await this.#lease.run(make, { station, priority, deadline, label: 'write' })
+    } catch (/** @type {any} */ error) {
+      // the line knows only that a byte went out: before the first frame that writes it was one that reads
+      if (facts.writes > 0 || error.details?.sent !== true) throw error
+      throw new PlcError(error.code, { ...error.details, sent: false, cause: error })
+    }
+  }
+
+  *#reading(request) {
+    const query = readQuery(request)
+    const { units, most } = this.#settings
+    const known = `${query.fn} ${query.base} ${query.count}`
+    const { exact } = this.#memory
+    const unit = exact.has(known) ? 1 : units[query.fn]
+    const facts = { exact: false }
+    const result = yield* this.#counted(readDialog(query, { ...this.#options(), unit, most: most[query.fn], facts }))
+    if (facts.exact) {
+      if (exact.size >= MOST_EXACT) exact.clear()
+      exact.add(known)
+    }
+    return result.values
+  }
+
+  *#writing({ query: request, item }, facts) {
+    const { functions, station, broadcast } = this.#settings
+    const write = writeOf(request, functions)
+    // an answer that equals the query proves nothing while the adapter may hear itself
+    const probe = this.#lease.line.echo === 'unknown'
+    const names = request.points.length === 1 ? () => item : describeQuery
+    const options = { ...this.#options(), item, facts, probe, names, ...(broadcast ? { broadcast } : {}) }
+    const result = yield* this.#counted(writeDialog(write, options))
+    if (station !== 0) return result.values
+    this.#counts.broadcasts++
+    throw new PlcError('BROADCAST_UNCONFIRMED', { item, line: this.#lease.line.name, sent: true })
+  }
+
+  #options() {
+    const { station, framing, timeout, attempts } = this.#settings
+    const gap = gapOf(this.#settings, this.#lease.line.times?.character ?? 0)
+    return { station, protocol: framing, timeout, attempts, gap, exchange }
+  }
+
+  *#counted(dialog) {
+    this.#counts.requests++
+    try {
+      const result = yield* dialog
+      if (this.#settings.station !== 0) this.#counts.answers++
+      return result
+    } catch (/** @type {any} */ error) {
+      if (isRefusal(error) || isRefusal(error.cause)) this.#counts.exceptions++
+      throw error
+    }
+  }
+
+  close() {}
+}
+
+module.exports = { ModbusTalk, writeOf }

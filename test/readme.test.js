@@ -1,15 +1,16 @@
 'use strict'
 
-/** The README's program is run as it stands there, against a simulated PLC behind a real (virtual) serial port. */
+/** The programs of README and docs/chino.md are run as they stand there, against simulated devices behind a real (virtual) serial port. */
 
 const assert = require('node:assert/strict')
 const fs = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
-const { createNxLine, serveOnPty, serveOnTcp } = require('../lib/sim')
+const { createLine, createNxLine, serveOnPty, serveOnTcp } = require('../lib/sim')
 const { filesBelow, read } = require('./support/source.js')
 
-const snippet = () => /test\/readme\.test\.js as it stands here -->\n```js\n([\s\S]*?)```/.exec(read('README.md'))[1]
+const snippet = (page = 'README.md') =>
+  /test\/readme\.test\.js as it stands here -->\n```js\n([\s\S]*?)```/.exec(read(page))[1]
 
 /** Runs it with `require`, `console` and, instead of the adapter's path, the simulator's. */
 async function run(text, wrong) {
@@ -52,6 +53,31 @@ describe('README', () => {
       const printed = await run(snippet(), ["path: '/dev/ttyUSB0'", `host: '127.0.0.1', port: ${server.port}`])
       assert.deepEqual(printed[0], ['confirmed'])
       assert.equal(plcs[0].get('K0'), 215)
+    } finally {
+      await server.close()
+    }
+  })
+
+  it('docs/chino.md: its program writes and reads a regulator', async () => {
+    const { wire, stations } = createLine({
+      stations: [{ device: 'chino', station: 11 }],
+      baudRate: 19200,
+      quiet: true
+    })
+    const server = await serveOnTcp({ wire })
+    try {
+      stations[0].set('300007', 100000, 'uint32')
+      stations[0].set('400003', 7)
+      const place = ["path: '/dev/ttyUSB0'", `host: '127.0.0.1', port: ${server.port}`]
+      const printed = await run(snippet('docs/chino.md'), place)
+      const seen = [
+        ['hr0', 400],
+        ['_001001', true],
+        ['_400001_400003', [400, 0, 7]],
+        ['_300007', 100000]
+      ]
+      assert.deepEqual(printed, [['confirmed'], ...seen])
+      assert.deepEqual([stations[0].get('400001'), stations[0].get('001001')], [400, true])
     } finally {
       await server.close()
     }

@@ -7,9 +7,11 @@ const { areaMap } = require('./codec/nx/areas')
 const { describeAddress, formatAddress, parseAddress } = require('./codec/nx/address')
 const { PRIORITY, createPool, lineSettings, listPorts } = require('./line')
 const { createChinoRegulator } = require('./device/chino-regulator')
+const { diagnose } = require('./device/diagnose')
 const { mixedConflict } = require('./device/mixed')
 const { createNxPlc } = require('./device/nx-plc')
 const { openChinoRegulator, openNxPlc } = require('./device/open')
+const { masterIdsOf } = require('./device/settings')
 const { createThrottle } = require('./device/throttle')
 const { csvWarnings, tagsFromCsv, tagsToCsv } = require('./tag/csv')
 const { parseItem } = require('./tag/item')
@@ -32,11 +34,13 @@ module.exports = {
   createThrottle,
   csvWarnings,
   describeAddress,
+  diagnose,
   entriesOf,
   formatAddress,
   itemsOf,
   lineSettings,
   listPorts,
+  masterIdsOf,
   messagesOf,
   mixedConflict,
   modbusNotation,

@@ -163,4 +163,4 @@ class ChinoConnection extends Connection {
   }
 }
 
-module.exports = { ChinoConnection, NxConnection, openChinoRegulator, openNxPlc }
+module.exports = { ChinoConnection, NxConnection, openChinoRegulator, openNxPlc, sharedPool }

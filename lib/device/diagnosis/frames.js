@@ -76,11 +76,17 @@ function asciiIn(bytes, more = {}) {
 function findFrames(bytes, expected) {
   const ascii = asciiIn(bytes)
   // characters of 7 bits with parity, read as 8
-  const stripped = ascii.length > 0 ? [] : asciiIn(bytes.map(byte => byte & 0x7f), { dataBits: 7 })
+  const stripped =
+    ascii.length > 0
+      ? []
+      : asciiIn(
+          bytes.map(byte => byte & 0x7f),
+          { dataBits: 7 }
+        )
   if (ascii.length + stripped.length > 0) return [...ascii, ...stripped]
   const order = expected === 'nx' ? [nxAt, rtuAt] : [rtuAt, nxAt]
   const found = []
-  for (let at = 0; at < bytes.length; ) {
+  for (let at = 0; at < bytes.length;) {
     const frame = order.reduce((first, look) => first ?? look(bytes, at), /** @type {Found | null} */ (null))
     if (frame) found.push(frame)
     at += frame?.length ?? 1

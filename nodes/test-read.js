@@ -1,6 +1,6 @@
 'use strict'
-const { PlcError, listPorts } = require('../lib/index.js')
-const { createDevice, deviceSettings } = require('./device-settings')
+const { PlcError, diagnose, listPorts } = require('../lib/index.js')
+const { deviceSettings, kindOf, readDevice } = require('./device-settings')
 const { PROPERTIES } = require('./properties')
 const { readSettings } = require('./settings')
 const { sharedPool } = require('./pool')
@@ -14,7 +14,6 @@ const { simulatedWire } = require('./simulated')
 
 const OWNER = { id: 'test', name: 'Test' }
 const VARIABLE = /^\$\{[^}]+\}$/
-const FIRST = ['M0', 'R0', '@0x0000']
 
 const liveNode = (RED, type, id) => {
   const node = typeof id === 'string' ? RED.nodes.getNode(id) : null
@@ -49,87 +48,68 @@ const checkPath = async (RED, path) => {
 
 const sameLine = (live, settings) => Object.keys(settings).every(name => live.settings[name] === settings[name])
 
-/** A lease of the deployed line, or of one with the settings of the dialog. */
-const leaseFor = async (RED, { line, plc }) => {
+/** Where the station is asked: over a lease of the deployed line, or on a line with the settings of the dialog. */
+const lineFor = async (RED, { line, device }) => {
   const live = liveNode(RED, 'plc-line', line?.id)
-  const settings = poolSettings(readSettings('plc-line', taken('plc-line', line, live)))
-  if (
-    live &&
-    (settings.transport === 'simulated' ? live.simulated : sameLine(live, { ...settings, name: live.settings.name }))
-  ) {
-    const undo = live.simulated ? live.plcs.visit(plc) : undefined
-    return { lease: live.lease(OWNER), where: settings, undo }
+  const where = poolSettings(readSettings('plc-line', taken('plc-line', line, live)))
+  const isLive =
+    live && (where.transport === 'simulated' ? live.simulated : sameLine(live, { ...where, name: live.settings.name }))
+  if (isLive) {
+    const undo = live.simulated ? live.plcs.visit(device) : undefined
+    return { where, undo, lease: live.lease(OWNER) }
   }
-  if (settings.transport === 'serial') await checkPath(RED, settings.path)
-  if (settings.transport !== 'simulated') return { lease: sharedPool().open(settings, OWNER), where: settings }
-  const simulated = simulatedWire(settings)
-  simulated.add(plc)
-  return { lease: sharedPool().open({ ...settings, path: 'test', wire: simulated.wire }, OWNER), where: settings }
-}
-
-const itemToRead = (device, tags) => {
-  const works = text => {
-    try {
-      return Boolean(device.item(text))
-    } catch {
-      return false
-    }
-  }
-  return [...tags.map(tag => tag?.name), ...FIRST].find(text => typeof text === 'string' && works(text))
+  if (where.transport === 'serial') await checkPath(RED, where.path)
+  if (where.transport !== 'simulated') return { where, pool: sharedPool() }
+  const simulated = simulatedWire(where)
+  simulated.add(device)
+  return { where: { ...where, path: 'test', wire: simulated.wire }, pool: sharedPool() }
 }
 
 const problem = error => ({ code: error.code, message: error.message, details: error.details })
 
-/** ms from the last frame out to the last one in: without the silence that the line keeps after it was opened. */
-const tookOf = (line, station) => {
-  const last = dir => line.trace().findLast(frame => frame.dir === dir && frame.station === station)?.t ?? 0
-  return Math.max(0, Math.round(last('in') - last('out')))
+const answerOf = ({ ok, cause, seen, rows }, { where, device }) => {
+  const { station, ms, item, value, reached, code, text } = seen
+  if (ok) return { ok, station, ms, item, value, cause, rows }
+  const { path, host, port } = where
+  const details = { station, timeout: device.timeout, address: item, path: path || `${host}:${port}` }
+  return { ok, reached, error: { code, message: text, details }, cause, rows }
 }
 
-const readOnce = async ({ lease, where }, settings) => {
-  const own = { ...settings, attempts: 1, access: 'read' }
-  const { device } = createDevice(lease, deviceSettings(own, { name: OWNER.name, stations: [], gap: where.gap }))
+const test = async (RED, type, body) => {
+  const given = body.plc ?? body.device
+  const device = readDevice(type, taken(type, given, liveNode(RED, type, given?.id)))
+  const { where, undo, lease, pool } = await lineFor(RED, { line: body.line, device })
   try {
-    const item = itemToRead(device, settings.tags)
-    const [result] = await device.read([item])
-    const { station } = settings
-    if (result.quality !== 'bad')
-      return { ok: true, station, ms: tookOf(lease.line, station), item, value: result.value }
-    const { code, text } = result
-    const { path, host, port } = where
-    const details = {
-      station: settings.station,
-      timeout: settings.timeout,
-      address: item,
-      path: path || `${host}:${port}`
-    }
-    return { ok: false, reached: code.startsWith('PLC_'), error: { code, message: text, details } }
-  } finally {
-    device.close()
-  }
-}
-
-const test = async (RED, body) => {
-  const plc = readSettings('nx-config', taken('nx-config', body.plc, liveNode(RED, 'nx-config', body.plc?.id)))
-  const { lease, where, undo } = await leaseFor(RED, { line: body.line, plc })
-  try {
-    return await readOnce({ lease, where }, plc)
+    const diagnosis = await diagnose({
+      ...deviceSettings(device, { name: OWNER.name, stations: [], gap: where.gap }),
+      ...where,
+      protocol: kindOf(device).protocol === 'nx' ? 'nx' : device.protocol,
+      tryOtherSpeeds: body.tryOtherSpeeds === true,
+      tryOtherModes: body.tryOtherModes === true,
+      ...(lease ? { lease } : { pool })
+    })
+    return answerOf(diagnosis, { where, device })
   } finally {
     undo?.()
-    await lease.release()
+    await lease?.release()
   }
 }
 
 /**
- * POST nx-config/test with `{ plc, line }`, the properties of both as in the dialog. Answers `{ ok, station, ms, item, value }` or
- * `{ ok: false, reached, error: { code, message } }`; 400 with an error if the settings cannot be used.
+ * POST nx-config/test and chino-config/test with `{ plc, line }`, the properties of both as in the dialog; `tryOtherSpeeds`, `tryOtherModes`: true
+ * as for `diagnose`. Answers `{ ok, station, ms, item, value }` or `{ ok: false, reached, error: { code, message, details } }`, both with `cause`
+ * and `rows` (docs/diagnosis.md); 400 with an error if the settings cannot be used.
+ * @param {any} RED
+ * @param {string} [type] of the config node
  */
-const testHandler = RED => (request, response) => {
-  const body = request.body !== null && typeof request.body === 'object' ? request.body : {}
-  test(RED, body).then(
-    answer => response.json(answer),
-    error => response.status(error instanceof PlcError ? 400 : 500).json({ ok: false, error: problem(error) })
-  )
-}
+const testHandler =
+  (RED, type = 'nx-config') =>
+  (request, response) => {
+    const body = request.body !== null && typeof request.body === 'object' ? request.body : {}
+    test(RED, type, body).then(
+      answer => response.json(answer),
+      error => response.status(error instanceof PlcError ? 400 : 500).json({ ok: false, error: problem(error) })
+    )
+  }
 
 module.exports = { testHandler }

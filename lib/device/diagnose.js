@@ -1,4 +1,5 @@
 'use strict'
+const { PlcError } = require('../error')
 const { latencyTimer, lineSettings, realClock } = require('../line')
 const { causeOf, hasSpoken } = require('./diagnosis/causes')
 const { evidenceOf } = require('./diagnosis/evidence')
@@ -62,6 +63,7 @@ function prepare(options) {
   const given = { ...options, name: '', clock, protocol: checkProtocol(options.protocol) }
   const transport = given.transport ?? (given.host ? 'tcp' : 'serial')
   const wire = lease ? { ...given } : lineSettings({ ...given, transport })
+  checkDataBits(given.protocol, wire.dataBits)
   return {
     given,
     clock,
@@ -73,6 +75,13 @@ function prepare(options) {
     tried: [],
     path: wire.host ? `${wire.host}:${wire.port}` : wire.path
   }
+}
+
+/** A byte of an RTU frame has all eight bits. */
+const checkDataBits = (protocol, dataBits) => {
+  if (protocol !== 'rtu' || Number(dataBits) !== 7) return
+  const reason = 'RTU needs 8 data bits on the line; ASCII works with 7'
+  throw new PlcError('BAD_SETTING', { setting: 'dataBits', value: dataBits, reason })
 }
 
 async function examine(test) {
@@ -171,7 +180,7 @@ function report(test, seen) {
     cause,
     seen: {
       ...{ station, item: choice.item, goesOut, value, ms: evidence.ms, waited, code: result.code, text: result.text },
-      ...{ shared, tried, notTried: notTried(test) },
+      ...{ reached: answered, shared, tried, notTried: notTried(test) },
       sent: evidence.sent.toString('hex'),
       received: evidence.seen.toString('hex'),
       echo: evidence.echo || test.lease.line.echo === 'present',
@@ -203,7 +212,7 @@ function sheetFacts(test, { ok, answered, found, result, late, evidence, cause, 
  * @property {boolean} ok the station answers with these settings
  * @property {import('./diagnosis/causes').Cause | null} cause the likely one; null if ok
  * @property {Record<string, any>} seen facts: `station` `item` `goesOut` `value` `ms` (from query to answer) `waited` (ms in all) `code` `text`
- *   (of the read's error) `sent` `received` (hex, without our echo) `echo` `stations` (numbers heard among stray bytes) `lateness` (ms, or null)
+ *   (of the read's error) `reached` (the station itself has spoken, if only to refuse) `sent` `received` (hex, without our echo) `echo` `stations` (numbers heard among stray bytes) `lateness` (ms, or null)
  *   `framing` (with which it answers, or null) `shared` `tried` (`[{ what, answered, code }]`) `notTried` (why not, or '')
  * @property {import('./diagnosis/sheet').Row[]} rows
  */

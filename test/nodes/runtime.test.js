@@ -120,8 +120,9 @@ describe('nodes in a real Node-RED', function () {
   it('test of the deployed PLC uses its line', async () => {
     const { status, json } = await test({ plc: plc(), line: tcp() })
     assert.equal(status, 200)
-    const { ms, ...answer } = json
-    assert.deepEqual(answer, { ok: true, station: 1, item: 'M0', value: 4711 })
+    const { ms, rows, ...answer } = json
+    assert.deepEqual(answer, { ok: true, station: 1, item: 'M0', value: 4711, cause: null })
+    assert.equal(rows.find(({ id }) => id === 'prefixDiagnosis').value, 1)
     assert.ok(ms >= 0 && ms < 2000)
     assert.equal(wire.connections(), 1)
   })

@@ -27,6 +27,9 @@ const checkProtocol = protocol => {
 /** @param {'nx'|'rtu'|'ascii'} protocol @param {unknown} timeout @returns {number} ms */
 const timeoutOf = (protocol, timeout) => Number(timeout) || DEFAULT_TIMEOUT[protocol]
 
+/** The line keeps its own gap to the fraction; here it only takes the place of the protocol's. */
+const wholeGap = gap => (Number(gap) > 0 ? Math.max(1, Math.floor(Number(gap))) : 0)
+
 /**
  * A device that asks once.
  * @param {any} lease
@@ -37,8 +40,8 @@ const timeoutOf = (protocol, timeout) => Number(timeout) || DEFAULT_TIMEOUT[prot
  */
 const makeDevice = (lease, given, changes = {}) => {
   const protocol = changes.protocol ?? given.protocol
-  // a broken row of the tag table, or a limit of writing, must not spoil a test of the connection
-  const own = { attempts: 1, access: 'read', writableRanges: '', tags: [] }
+  // a broken row of the tag table must not spoil a test of the connection
+  const own = { attempts: 1, access: 'read', tags: [], gap: wholeGap(given.gap) }
   return MAKERS[protocol]({ ...given, ...own, ...changes, protocol, lease })
 }
 

@@ -17,7 +17,7 @@ const FAST_SILENCE = 1.75
 const ASCII_GAP = 1000
 
 /**
- * A simulated CHINO thyristor regulator: MODBUS RTU or ASCII, four tables of 65536 addresses, and, if asked for, a heater.
+ * A simulated CHINO thyristor regulator: MODBUS RTU or ASCII, four tables of 65536 addresses, and a heater.
  *
  * - `station` 1..247; it carries out broadcasts, too, without an answer
  * - `protocol` `rtu` (default) or `ascii`; `baudRate` (19200) and `bitsPerByte` (10) give the 3.5 characters of silence of RTU
@@ -28,7 +28,7 @@ const ASCII_GAP = 1000
  * - `tables` what a table has, as in `{ hr: ['400001..400100', 'hr200'], ir: [] }`; the rest of it: exception 02
  * - `protect` addresses that cannot be written, as in `['400010..400019', 'co5']`: exception `protectError` (3)
  * - `ranges` rows `{ at: '400001', least, most }`: what a register takes; else exception 03
- * - `values` rows `{ at, as, value }` at the start; `heating` the model of heating.js
+ * - `values` rows `{ at, as, value }` at the start; `heating` the model of heating.js (on, unless `behaviour` is given)
  * - `addressMode` `1-base` (default) or `0-base`: how the addresses of these settings are meant
  * - `behaviour`, `history` see behaviour.js and words.js
  * - `onExecute({ at, query, station })` after each query carried out
@@ -71,7 +71,7 @@ function prepare(settings) {
     functions: new Set(functions ?? FUNCTIONS.map(({ fn }) => fn)),
     limits,
     turnaround: () => Math.max(turnaround(), ascii ? 0 : silence),
-    memory: createModbusMemory({ ...settings, now: settings.clock.now }),
+    memory: createModbusMemory({ heating: !settings.behaviour, ...settings, now: settings.clock.now }),
     counts: { ...emptyCounts(), broadcasts: 0 },
     writes: new Map()
   }

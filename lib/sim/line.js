@@ -39,7 +39,7 @@ function makeNx(own, { common, quiet }) {
 }
 
 function makeChino(own, { common: { gap, ...common }, quiet }) {
-  const settings = { heating: !quiet && !own.behaviour, ...common, ...own }
+  const settings = { ...(quiet ? { heating: false } : {}), ...common, ...own }
   // the pauses of programs lie within what ASCII allows between two characters
   return createChinoRegulator(settings.protocol === 'ascii' || !gap ? settings : { gap, ...settings })
 }

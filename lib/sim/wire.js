@@ -161,8 +161,13 @@ const pieceOf = ({ chunk }) => Math.max(1, typeof chunk === 'function' ? chunk()
 
 /** What has come over the wire by now is heard: floor(elapsed × baud / 10) bytes, however late the timer is. */
 function arrive(wire, sending) {
-  const { clock, byteMs, parties } = wire
-  const { bytes, start, told, from } = sending
+  const { clock, byteMs, parties, active } = wire
+  const { bytes, start, from } = sending
+  // timers of a real clock may overtake each other; the bytes of one sender do not
+  const overtaken = each => each.from === from && each.start < start && each.end <= clock.now()
+  for (const earlier of active.filter(overtaken)) arrive(wire, earlier)
+  const { told } = sending
+  if (told === bytes.length) return
   const count = Math.min(bytes.length, Math.floor((clock.now() - start) / byteMs + 1e-6))
   if (count > told) {
     const piece = bytes.subarray(told, count)
@@ -171,7 +176,7 @@ function arrive(wire, sending) {
     for (const party of [...parties]) if (party !== from || party.handlers) party.hear(piece, times, from)
   }
   if (count < bytes.length) return schedule(wire, sending)
-  wire.active.splice(wire.active.indexOf(sending), 1)
+  active.splice(active.indexOf(sending), 1)
 }
 
 /**

@@ -9,6 +9,7 @@ const { read } = require('../../scripts/simulate')
 
 const SCRIPT = path.join(__dirname, '../../scripts/simulate.js')
 const CLIENT = path.join(__dirname, 'independent_client.py')
+const MODBUS_CLIENT = path.join(__dirname, 'independent_modbus_client.py')
 const hasPython = spawnSync('python3', ['--version']).status === 0
 
 /** Starts the simulator and waits for its line; `stop` ends it as Ctrl-C does. */
@@ -31,17 +32,17 @@ function simulate(...args) {
   return { line, stop, ended }
 }
 
-const runPython = where =>
+const runPython = (...args) =>
   new Promise(resolve => {
-    const child = spawn('python3', [CLIENT, where])
+    const child = spawn('python3', args)
     let text = ''
     for (const stream of [child.stdout, child.stderr]) stream.on('data', data => (text += data))
     child.on('close', code => resolve({ code, text }))
   })
 
-const assertFoundCorrect = ({ code, text }) => {
+const assertFoundCorrect = ({ code, text }, checks) => {
   assert.strictEqual(code, 0, text)
-  assert.match(text, /ok 25\s*$/)
+  assert.match(text, new RegExp(`ok ${checks}\\s*$`))
 }
 
 describe('npm run simulate', function () {
@@ -58,7 +59,7 @@ describe('npm run simulate', function () {
     const { line, stop } = simulate(...nx, '--pty', link)
     try {
       assert.strictEqual(await line, `nx stations 1 on pty ${link}, 38400 bit/s, faults none, seed 7\n`)
-      assertFoundCorrect(await runPython(link))
+      assertFoundCorrect(await runPython(CLIENT, link), 25)
     } finally {
       assert.strictEqual((await stop('SIGINT')).code, 0)
     }
@@ -71,20 +72,73 @@ describe('npm run simulate', function () {
     try {
       const found = /^nx stations 1 on tcp (127\.0\.0\.1:\d+), /.exec(await line)
       assert.ok(found)
-      assertFoundCorrect(await runPython(found[1]))
+      assertFoundCorrect(await runPython(CLIENT, found[1]), 25)
+    } finally {
+      assert.strictEqual((await stop('SIGTERM')).code, 0)
+    }
+  })
+
+  const chino = [
+    'chino',
+    '--stations',
+    '11,12',
+    '--baud',
+    '115200',
+    '--quiet',
+    '--protect',
+    'hr500..hr509,co5',
+    '--seed',
+    '7'
+  ]
+  for (const protocol of ['rtu', 'ascii']) {
+    it(`regulators, ${protocol} over TCP: a client of its own finds them correct`, async function () {
+      if (!hasPython) return skip(this, 'python3 is not installed')
+      const { line, stop } = simulate(...chino, '--tcp', '0', '--protocol', protocol)
+      try {
+        const found = new RegExp(`^chino stations 11,12 \\(${protocol}\\) on tcp (127\\.0\\.0\\.1:\\d+), `).exec(
+          await line
+        )
+        assert.ok(found)
+        assertFoundCorrect(await runPython(MODBUS_CLIENT, found[1], protocol, '115200'), 33)
+      } finally {
+        assert.strictEqual((await stop('SIGTERM')).code, 0)
+      }
+    })
+  }
+
+  it('both on one line: each client finds its own correct', async function () {
+    if (!hasPython) return skip(this, 'python3 is not installed')
+    const mixed = ['mixed', '--stations', 'nx:1,chino:11,chino:12', '--protect', 'F0..F15,hr500..hr509,co5']
+    const { line, stop } = simulate(...mixed, '--baud', '38400', '--quiet', '--seed', '7', '--tcp', '0')
+    try {
+      const found = /^mixed stations nx:1,chino:11,chino:12 \(rtu\) on tcp (127\.0\.0\.1:\d+), /.exec(await line)
+      assert.ok(found)
+      // one after the other: two masters at once spoil each other's bytes
+      assertFoundCorrect(await runPython(CLIENT, found[1]), 25)
+      assertFoundCorrect(await runPython(MODBUS_CLIENT, found[1], 'rtu', '38400'), 33)
     } finally {
       assert.strictEqual((await stop('SIGTERM')).code, 0)
     }
   })
 
   const wrong = [
-    [[], 'the device is missing: it must be nx'],
-    [['modbus', '--tcp', '0'], 'the device is modbus: it must be nx'],
+    [[], 'the device is missing: it must be nx, chino or mixed'],
+    [['modbus', '--tcp', '0'], 'the device is modbus: it must be nx, chino or mixed'],
     [['nx'], '--pty, --tcp is missing: give one of them'],
     [['nx', '--tcp', '0', '--pty', 'x'], '--pty, --tcp is both'],
     [['nx', '--tcp', '70000'], '--tcp is 70000: it must be a whole number from 0 to 65535'],
     [['nx', '--tcp', '0', '--stations', '1,192'], '--stations is 192: it must be a whole number from 0 to 191'],
     [['nx', '--tcp', '0', '--stations', '3,3'], '--stations is 3,3: a number stands there twice'],
+    [['chino', '--tcp', '0', '--stations', '0'], '--stations is 0: it must be a whole number from 1 to 247'],
+    [['chino', '--tcp', '0', '--stations', 'nx:1'], '--stations is nx:1: it must be a whole number from 1 to 247'],
+    [['mixed', '--tcp', '0', '--stations', 'nx:1,chino:1'], 'a number stands there twice'],
+    [['mixed', '--tcp', '0', '--stations', '1,11'], '--stations is 1: it must be nx:NUMBER or chino:NUMBER'],
+    [['mixed', '--tcp', '0', '--stations', 'nx:200'], '--stations is 200: it must be a whole number from 0 to 191'],
+    [['chino', '--tcp', '0', '--protocol', 'tcp'], '--protocol is tcp: it must be rtu or ascii'],
+    [['nx', '--tcp', '0', '--protocol', 'rtu'], '--protocol is rtu: nx has no such option'],
+    [['nx', '--tcp', '0', '--fault', 'error:0.1:6'], 'from 1 to 5'],
+    [['chino', '--tcp', '0', '--fault', 'error:0.1:256'], 'from 1 to 255'],
+    [['mixed', '--tcp', '0', '--fault', 'error:0.1:6'], 'from 1 to 5'],
     [['nx', '--tcp', '0', '--fault', 'tired:0.1'], 'fault is tired:0.1: known faults are lost, silent,'],
     [['nx', '--tcp', '0', '--fault', 'late'], 'fault is late: the rate must be a number'],
     [['nx', '--tcp', '0', '--frobnicate'], "Unknown option '--frobnicate'"]
@@ -106,12 +160,37 @@ describe('npm run simulate', function () {
     assert.match(text, /^"X1" names the area X, .*\nTry --help\.\n$/)
   })
 
+  it('each station of a mixed line gets the ranges of its own notation', () => {
+    const { stations } = read([
+      'mixed',
+      '--tcp',
+      '0',
+      '--stations',
+      'chino:2,nx:1',
+      '--protect',
+      '400010..400019,K0,HR5'
+    ])
+    assert.deepStrictEqual(stations, [
+      { device: 'chino', station: 2, protect: ['400010..400019', 'HR5'] },
+      { device: 'nx', station: 1, protect: ['K0'] }
+    ])
+  })
+
   it('--help names every option and fault', async () => {
     const { line, ended } = simulate('--help')
     await line
     const { code, text } = await ended
     assert.strictEqual(code, 0)
-    for (const word of ['--pty LINK', '--tcp PORT', '--seed N', 'late ', 'merged '])
+    for (const word of [
+      '--pty LINK',
+      '--tcp PORT',
+      '--seed N',
+      '--protocol NAME',
+      'late ',
+      'merged ',
+      'chino ',
+      'mixed '
+    ])
       assert.ok(text.includes(word), word)
   })
 })

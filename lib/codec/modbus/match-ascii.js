@@ -17,10 +17,7 @@ const SHORTEST = asciiLength(5)
 function asciiAnswerTo({ length, header }, { station, fn, sent }) {
   const answer = { header: beginning(header), length: asciiLength(length) }
   const exception = { header: beginning(Buffer.of(station, fn | EXCEPTION)), length: SHORTEST }
-  // our own frame may begin as the answer does
-  const echo =
-    sent && begins(sent, 0, answer.header) === answer.header.length && sent.length !== answer.length ? sent : null
-  return characters => judge(characters, { frames: [answer, exception], echo, sent })
+  return characters => judge(characters, { frames: [answer, exception], sent })
 }
 
 const beginning = bytes => Buffer.from(`:${Buffer.from(bytes).toString('hex').toUpperCase()}`, 'latin1')
@@ -51,30 +48,39 @@ function endOf(characters, limit) {
 }
 
 /** A frame with its end. @returns {Verdict} */
-function judgeWhole(characters, { end, more }, { frames, echo, sent }) {
+function judgeWhole(characters, { end, more }, { frames, sent }) {
   const frame = characters.subarray(0, end)
   const own = frames.find(({ header }) => begins(frame, 0, header) === header.length)
   if (!own) return { skip: end }
   const whole = fromAscii(frame) !== null
   if (whole && end === own.length) return { take: end }
-  // right checksum, wrong length: somebody else's; and our own echo is no answer, however damaged
-  if (whole || (echo && Math.abs(end - echo.length) <= 2 && sent)) return { skip: end }
-  return more ? { skip: end } : { bad: 'LRC', length: end }
+  // right checksum, wrong length: somebody else's
+  if (whole || more || isEcho(frame, sent, own)) return { skip: end }
+  return { bad: 'LRC', length: end }
 }
 
 /** The last frame, as far as it has come. @returns {Verdict} */
-function judgePart(characters, { frames, echo }) {
+function judgePart(characters, { frames, sent }) {
   const { length } = characters
   for (const own of frames) {
     const equal = begins(characters, 0, own.header)
     if (equal === own.header.length) {
       if (length < own.length) return { need: own.length, ours: true }
-      if (echo && length < echo.length) return { need: echo.length }
-      return { bad: 'LRC', length }
+      if (!isEcho(characters, sent, own)) return { bad: 'LRC', length }
+      return length < sent.length ? { need: sent.length } : { skip: length }
     }
     if (equal === length) return { need: Math.max(SHORTEST, length + 1) }
   }
   return { skip: length }
+}
+
+/** Our own frame, heard by the adapter, with up to a quarter of it damaged: it may begin as an answer does. 05 and 06 are their own answers. */
+function isEcho(characters, sent, own) {
+  if (!sent || sent.length === own.length) return false
+  const length = Math.min(characters.length, sent.length)
+  let differences = 0
+  for (let i = 0; i < length; i++) if (characters[i] !== sent[i]) differences++
+  return differences <= length >> 2
 }
 
 module.exports = { asciiAnswerTo }

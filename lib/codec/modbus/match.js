@@ -66,21 +66,21 @@ function equalBytes(bytes, at, pattern) {
  */
 function isEcho(bytes, at, sent, { length, header }) {
   const left = Math.min(bytes.length - at, sent.length)
-  if (left === sent.length && equalBytes(bytes, at, sent) === left)
-    return !(sent.length === length && isAnswer(sent, header))
-  if (left < HEADER || differences(bytes, at, sent, left) > left >> 2) return false
-  if (equalBytes(bytes, at, header) < Math.min(header.length, bytes.length - at))
-    return bytes[at + 1] !== (sent[1] | EXCEPTION)
-  // it begins as the answer does: of 0F and 10 the answer is over where the echo's values begin
-  if (sent.length <= length || bytes.length - at < length || crcFits(bytes, at, length)) return false
-  return bytes[at + 6] === sent[6] || bytes[at + 7] === sent[7]
+  const equal = equalBytes(bytes, at, sent)
+  if (equal === sent.length) return sent.length !== length || equalBytes(sent, 0, header) < header.length
+  if (left < HEADER || (equal < left && differences(bytes, at, sent) > left >> 2)) return false
+  if (bytes[at + 1] === (sent[1] | EXCEPTION)) return isNot(EXCEPTION_LENGTH, bytes, at)
+  if (equalBytes(bytes, at, header) < Math.min(header.length, bytes.length - at)) return true
+  // so far it is the answer, too: of 0F and 10 that one is over where the echo's values begin
+  return length < sent.length && isNot(length, bytes, at) && (bytes[at + 6] === sent[6] || bytes[at + 7] === sent[7])
 }
 
-const isAnswer = (sent, header) => equalBytes(sent, 0, header) === header.length
+/** Whether a frame of this length would be complete, and is damaged. */
+const isNot = (length, bytes, at) => bytes.length - at >= length && !crcFits(bytes, at, length)
 
-function differences(bytes, at, sent, left) {
+function differences(bytes, at, sent) {
   let count = 0
-  for (let i = 0; i < left; i++) if (bytes[at + i] !== sent[i]) count++
+  for (let i = 0; i < sent.length && at + i < bytes.length; i++) if (bytes[at + i] !== sent[i]) count++
   return count
 }
 
@@ -134,13 +134,15 @@ function judge(bytes, look) {
 // What looked like a frame is damaged, or was noise before the real answer: later candidates are tried, but what lies wholly inside is part of
 // the damaged data.
 function afterDamage(bytes, { kind, length }, look) {
-  for (let at = 1; at < bytes.length; at++) {
+  const last = kind === 'other' ? length : bytes.length
+  for (let at = 1; at < last; at++) {
     const candidate = look(bytes, at)
-    if (candidate.kind === 'begins' && kind === 'other') return { skip: at }
-    if (candidate.kind !== 'ours') continue
-    const end = at + candidate.length
+    const end = candidate.kind === 'begins' ? bytes.length + 1 : at + candidate.length
+    // one byte alone is too little to wait for
+    const waits = candidate.kind === 'ours' || (candidate.kind === 'begins' && at + 1 < bytes.length)
+    if (!waits || end <= length) continue
     if (end > bytes.length) return kind === 'other' ? { skip: at } : { need: end, ours: true }
-    if (end > length && crcFits(bytes, at, candidate.length)) return { skip: at }
+    if (crcFits(bytes, at, candidate.length)) return { skip: at }
   }
   return kind === 'other' ? { skip: length } : { bad: 'CRC', length }
 }

@@ -125,7 +125,7 @@ class ModbusTalk {
     const result = yield* this.#counted(writeDialog(write, options))
     if (station !== 0) return result.values
     this.#counts.broadcasts++
-    throw new PlcError('BROADCAST_UNCONFIRMED', { item, line: this.#lease.line.name, sent: true })
+    throw new PlcError('BROADCAST_UNCONFIRMED', { item, line: this.#lease.line.name })
   }
 
   #options() {

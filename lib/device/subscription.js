@@ -9,6 +9,7 @@ const { PRIORITY } = require('../line')
 
 const LEAST = 10
 const MOST = 86400000
+const EARLY = 2 // ms: timers of Node.js may fire a little before their time, which must not count as a cycle of its own
 const MOST_JITTER = 100 // ms: many groups that start together do not stay together
 
 /** The failure of a whole cycle: every item is bad, for one reason. */
@@ -85,7 +86,7 @@ class Subscription {
 
   #tick() {
     // from the first one on, so that no delay adds up; after a stall the missed ones are left out
-    const done = Math.floor((this.#clock.now() - this.#first) / this.#interval + 1e-6)
+    const done = Math.floor((this.#clock.now() - this.#first + EARLY) / this.#interval)
     const next = this.#first + (done + 1) * this.#interval
     this.#timer = this.#clock.setTimer(() => this.#tick(), Math.max(0, next - this.#clock.now()))
     if (this.#running) this.#overruns++

@@ -61,6 +61,18 @@ describe('NX PLC: polling', () => {
     assert.ok(b.lease.line.stats().waiting <= 1)
   })
 
+  it('a timer that fires a little early makes no cycle of its own', async () => {
+    start()
+    // as Node.js does now and then
+    const clock = { ...b.clock, setTimer: (fn, ms) => b.clock.setTimer(fn, Math.max(0, ms - 0.8)) }
+    let count = 0
+    const device = b.make({ clock })
+    const subscription = device.subscribe({ items: ['M0'], interval: 100 }, () => count++)
+    await b.clock.advance(10000)
+    assert.deepEqual([count, subscription.overruns], [100, 0])
+    device.close()
+  })
+
   it('an error is news once, and so is its end', async () => {
     start({ plc: { attempts: 1, timeout: 50 } })
     const news = []

@@ -9,7 +9,7 @@ const CODES = Object.freeze({
   // --- what the user typed: found before anything is sent
   BAD_ADDRESS: [
     '"{address}" is not an address: {reason}',
-    'Write an area and a number, as in M0, K127.12, W10:float32 or M0..M127.'
+    'Write M0, K127.12, W10:float32 or M0..M127 for an NX PLC; 400108, 401001.05, hr107:float32 or 001001..001016 for MODBUS.'
   ],
   UNKNOWN_AREA: [
     '"{address}" names the area {area}, which this station does not have',
@@ -17,7 +17,7 @@ const CODES = Object.freeze({
   ],
   OUT_OF_AREA: [
     '"{address}" lies outside its area: {area} has {range}',
-    'Use an address inside the area, or correct the area table.'
+    'Use an address inside the area, or correct the area table, or the address mode.'
   ],
   BAD_BIT: ['"{address}" asks for bit {bit}', 'Bits are numbered in decimal from 0 to 15.'],
   BAD_COUNT: ['{count} {unit} cannot be asked for at once: {reason}', 'Ask for {least} to {most}.'],
@@ -59,7 +59,7 @@ const CODES = Object.freeze({
   ],
   FUNCTION_REFUSED: [
     'the function {function} is never sent',
-    'Only the six read and write functions of bits and words are used.'
+    'Only the functions that read and write bits and words are used.'
   ],
   FRAME_TOO_LONG: ['{what} does not fit into one frame: {got} of at most {most} bytes', 'Split it.'],
   TOO_MANY: ['{count} {unit} at once are too many: at most {most}', 'Split the message.'],

@@ -10,9 +10,8 @@
  */
 
 const { createPool } = require('../../lib/line')
-const { createNxPlc } = require('../../lib/device/nx-plc')
-const { createNxLine, createRandom, createVirtualClock } = require('../../lib/sim')
-const { STATIONS, STEP, checkWrites, noteWrites, step } = require('./workload')
+const { createLine, createRandom, createVirtualClock } = require('../../lib/sim')
+const { NX, checkWrites, createDevice, read, simulated, step, write } = require('./workload')
 
 /** 30 % of all answers: each kind of fault that the claim of zero wrong values covers. */
 const FAULTS = [
@@ -34,33 +33,25 @@ const FAULTS = [
 /**
  * @param {object} options
  * @param {number} options.seed
+ * @param {Record<string, any>[]} [options.stations] rows of workload.js
  * @param {number} [options.exchanges] queries and RRs that the stations hear at least
  * @param {{ kind: string, rate: number, argument?: number }[]} [options.faults]
  * @param {boolean} [options.collisions] see lib/sim/wire.js
  * @param {boolean} [options.echo] the adapter hears itself
  * @param {number} [options.unplugs] rate of unplugging and of redeploying per request
  * @param {boolean} [options.uniform] only one word at a time is read, from one station: answers differ in nothing but the value
+ * @param {boolean} [options.recovery] whether the faults end at last, and all stations must come back
  * @param {Record<string, any>} [options.device] further settings of the devices
  * @param {Record<string, any>} [options.wire] further settings of the line
  * @returns {Promise<Report>}
  */
 async function safetyRun(options) {
-  const {
-    seed,
-    exchanges = 5000,
-    faults = FAULTS,
-    collisions = true,
-    echo = false,
-    unplugs = 0.001,
-    uniform = false,
-    device,
-    wire
-  } = options
+  const { seed, exchanges = 5000, stations: rows = NX, faults = FAULTS, collisions = true, echo = false } = options
+  const { unplugs = 0.001, uniform = false, recovery = true, device, wire } = options
   const random = createRandom(seed)
   const clock = createVirtualClock()
   const writes = new Map()
-  const live = Array.from({ length: 128 }, (_, n) => [`M${n}`, `W${n}`]).flat()
-  const line = createNxLine({
+  const line = createLine({
     clock,
     echo,
     collisions,
@@ -68,16 +59,11 @@ async function safetyRun(options) {
     baudRate: 38400,
     rates: faults,
     chunk: () => random.pick([1, 3, 16, 64]),
-    stations: STATIONS.map(({ station, turnaround = 2 }) => ({
-      station,
-      turnaround,
-      history: true,
-      behaviour: live.map(at => ({ at, kind: 'random', every: STEP, seed: station })),
-      onExecute: ({ query }) => noteWrites(writes, station, query)
-    }))
+    stations: rows.map(row => simulated(row, writes))
   })
   const report = emptyReport(seed)
   const system = {
+    rows,
     clock,
     line,
     random,
@@ -92,6 +78,8 @@ async function safetyRun(options) {
   }
   const open = () => openSystem(system)
   await clock.run(drive(system, { open, exchanges }), { name: `safety run ${seed}` })
+  const count = { ...line.faults.counts }
+  if (recovery) await clock.run(recover(system), { name: 'recovery' })
   await clock.run(system.close(), { name: 'closing' })
   await clock.drain()
   checkWrites(system)
@@ -100,11 +88,11 @@ async function safetyRun(options) {
     timers: clock.pending(),
     exchanges: heard(line),
     virtualMs: Math.round(clock.now()),
-    faults: line.faults.counts
+    faults: count
   })
 }
 
-const heard = ({ plcs }) => plcs.reduce((sum, { counts }) => sum + counts.queries, 0)
+const heard = ({ stations }) => stations.reduce((sum, { counts }) => sum + counts.queries, 0)
 
 const emptyReport = seed => ({
   seed,
@@ -120,12 +108,15 @@ const emptyReport = seed => ({
   unplugged: 0,
   wrong: [],
   doubled: [],
-  misreported: []
+  misreported: [],
+  executed: 0,
+  recovered: 0,
+  relapses: 0
 })
 
 /** What users hold: one lease and one device per station; closing gives all back. */
 function openSystem(system) {
-  const { pool, line, clock, random } = system
+  const { pool, line, clock, random, rows } = system
   const settings = {
     transport: 'simulated',
     path: 'safety',
@@ -135,21 +126,8 @@ function openSystem(system) {
     ...system.wire
   }
   const lease = pool.open(settings, { id: 'safety', name: 'safety run' })
-  const devices = STATIONS.map(({ station, steps, soleMaster }) =>
-    createNxPlc({
-      lease,
-      clock,
-      random: random.next,
-      station,
-      steps,
-      soleMaster,
-      timeout: 150,
-      attempts: 2,
-      access: 'write',
-      writableRanges: 'K0..K127',
-      ...system.device
-    })
-  )
+  const common = { lease, clock, random: random.next, timeout: 150, attempts: 2, access: 'write', ...system.device }
+  const devices = rows.map(row => createDevice(row, common))
   system.devices = devices
   system.close = async () => {
     devices.forEach(device => device.close())
@@ -167,8 +145,30 @@ async function drive(system, { open, exchanges }) {
       await chaos(system, open)
     }
   }
-  const users = system.uniform ? [0, 0] : STATIONS.flatMap((_, index) => [index, index])
+  const users = system.uniform ? [0, 0] : system.rows.flatMap((_, index) => [index, index])
   await Promise.all(users.map(user))
+}
+
+const PATIENCE = 10000 // ms: the longest back-off, a dark station, the bound of lateness
+
+/** Liveness: the faults stop. Everything must come back by itself, and then nothing may be bad any more. */
+async function recover(system) {
+  const { clock, line, report, rows } = system
+  line.faults.clear()
+  line.wire.plug()
+  const start = clock.now()
+  const pause = () => new Promise(resolve => clock.setTimer(() => resolve(undefined), 50))
+  await Promise.all(
+    rows.map(async (_, index) => {
+      while (!(await read(system, index)) && clock.now() - start < PATIENCE) await pause()
+    })
+  )
+  report.recovered = clock.now() - start
+  for (let n = 0; n < 5 * rows.length; n++) {
+    const index = n % rows.length
+    if (!(await read(system, index))) report.relapses++
+    if ((await write(system, index)) !== 'confirmed') report.relapses++
+  }
 }
 
 /** An adapter is pulled, or a flow is deployed anew, in the middle of whatever the others do. */
@@ -204,6 +204,9 @@ async function chaos(system, open) {
  * @property {any[]} wrong
  * @property {any[]} doubled writes that a station carried out more than once
  * @property {any[]} misreported writes whose outcome contradicts what the station did
+ * @property {number} executed values that stations wrote, by their own count
+ * @property {number} recovered ms until every station gave good values, after the faults had stopped
+ * @property {number} relapses reads and writes that failed after that
  * @property {number} open lines left open
  * @property {number} timers left
  * @property {number} virtualMs
@@ -212,4 +215,4 @@ async function chaos(system, open) {
  * @property {number} unplugged
  */
 
-module.exports = { safetyRun, FAULTS }
+module.exports = { safetyRun, FAULTS, PATIENCE }

@@ -72,11 +72,11 @@ const deviceSettings = ({ type, ...settings }, { name, stations, gap = 0 }) => (
 })
 
 /** The rows of a tag table that can be used. */
-const usableTags = (settings, tags) => {
+const usableTags = (notation, settings) => {
   const names = new Set()
-  return tags.filter(row => {
+  return settings.tags.filter(row => {
     try {
-      const [name] = [...(kindOf(settings).notation(settings, [row]).tags ?? [])].map(([key]) => key)
+      const [name] = [...(notation(settings, [row]).tags ?? [])].map(([key]) => key)
       return !names.has(name) && names.add(name)
     } catch {
       return false
@@ -91,14 +91,13 @@ const usableTags = (settings, tags) => {
  * @param {any} settings of {@link deviceSettings}
  * @returns {{ device: any, tagFault: any }}
  */
-const createDevice = (lease, settings) => {
-  const { type: _type, ...options } = settings
-  const { create } = kindOf(settings)
+const createDevice = (lease, { type, ...options }) => {
+  const { create, notation } = kindOf({ type })
   try {
     return { device: create({ lease, ...options }), tagFault: null }
   } catch (/** @type {any} */ error) {
     if (error.code !== 'BAD_TAG') throw error
-    const tags = usableTags(settings, settings.tags)
+    const tags = usableTags(notation, options)
     return { device: create({ lease, ...options, tags, access: 'read' }), tagFault: error }
   }
 }

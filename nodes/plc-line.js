@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError, listPorts, mixedConflict } = require('../lib/index.js')
+const { PlcError, listPorts, masterIdsOf, mixedConflict } = require('../lib/index.js')
 const { kindOf } = require('./device-settings')
 const { poolSettings } = require('./line-settings')
 const { sharedPool } = require('./pool')
@@ -8,10 +8,19 @@ const { simulatedWire } = require('./simulated')
 
 const nameOf = node => node.name || node.id
 
+/** What is wrong with the master IDs is said by the PLC itself. */
+const idsOf = ({ masterIds }) => {
+  try {
+    return [...masterIdsOf(masterIds)]
+  } catch {
+    return []
+  }
+}
+
 const memberOf = ({ settings, station, label }) => ({
   protocol: kindOf(settings).protocol,
   station,
-  masterIds: settings.masterIds,
+  masterIds: idsOf(settings),
   name: label
 })
 
@@ -31,8 +40,7 @@ const stationList = line => {
   const checkMixed = deviceNode => {
     const one = memberOf(deviceNode)
     for (const other of members.values()) {
-      const another = memberOf(other)
-      const reason = one.protocol === another.protocol ? '' : mixedConflict(one, another)
+      const reason = mixedConflict(one, memberOf(other))
       if (!reason) continue
       const names = { owner: nameOf(deviceNode), other: nameOf(other), line: nameOf(line) }
       throw new PlcError('MIXED_LINE', { ...names, reason })

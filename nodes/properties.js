@@ -84,7 +84,7 @@ const PROPERTIES = {
     station: number('', 0, 247, { needed: true, isStation: true }),
     protocol: choice('rtu', 'rtu', 'ascii'),
     timeout: number(1000, 10, 600000),
-    sendWait: number(0, 0, 10000, { whole: false }),
+    sendWait: number(0, 0, 10000),
     attempts: number(3, 1, 20),
     addressMode: choice('1-base', '1-base', '0-base'),
     coilRead: number(2000, 1, 2000),

@@ -15,9 +15,12 @@ const newPlc = (station, { areas, clock }) => {
   return plc
 }
 
+/** Programs and kernels make pauses inside a frame that are none on a wire; ASCII allows a second. */
+const pauses = ({ protocol }) => (protocol === 'rtu' ? { gap: 25 } : {})
+
 const newStation = (station, { settings, clock }) =>
   settings.type === 'chino-config'
-    ? createChinoRegulator({ station, protocol: settings.protocol, clock })
+    ? createChinoRegulator({ station, protocol: settings.protocol, clock, ...pauses(settings) })
     : newPlc(station, { areas: settings.areas, clock })
 
 /** What a station is: with another device, or another protocol, it is another one. */

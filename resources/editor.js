@@ -20,6 +20,25 @@ var nxlineSerialPlc = (() => {
       var flag = (fallback = false) => ({ kind: "flag", fallback });
       var list = () => ({ kind: "list", fallback: [] });
       var node = () => ({ kind: "node", fallback: "", needed: true });
+      var READING = {
+        itemsType: choice("list", "list", "msg"),
+        items: list(),
+        interval: number(1e3, 0, 864e5, { except: [1, 9], says: "0, or 10 to 86400000" }),
+        format: choice("object", "object", "message", "envelope", "list"),
+        badValues: choice("omit", "omit", "null"),
+        ranges: choice("array", "array", "values"),
+        booleans: choice("boolean", "boolean", "number"),
+        report: choice("all", "all", "changed", "allOnChange")
+      };
+      var WRITING = {
+        target: text(),
+        verify: flag(),
+        onFailure: choice("error", "error", "output"),
+        acceptRetained: flag(),
+        coalesce: flag(),
+        topic: choice("item", "item", "keep", "fixed"),
+        topicText: text()
+      };
       var PROPERTIES = {
         "plc-line": {
           name: text(),
@@ -60,28 +79,40 @@ var nxlineSerialPlc = (() => {
           areas: list(),
           tags: list()
         },
-        "nx-read": {
+        "chino-config": {
           name: text(),
-          plc: node(),
-          itemsType: choice("list", "list", "msg"),
-          items: list(),
-          interval: number(1e3, 0, 864e5, { except: [1, 9], says: "0, or 10 to 86400000" }),
-          format: choice("object", "object", "message", "envelope", "list"),
-          badValues: choice("omit", "omit", "null"),
-          ranges: choice("array", "array", "values"),
-          booleans: choice("boolean", "boolean", "number"),
-          report: choice("all", "all", "changed", "allOnChange")
+          line: node(),
+          station: number("", 0, 247, { needed: true, isStation: true }),
+          protocol: choice("rtu", "rtu", "ascii"),
+          timeout: number(1e3, 10, 6e5),
+          sendWait: number(0, 0, 1e4),
+          attempts: number(3, 1, 20),
+          addressMode: choice("1-base", "1-base", "0-base"),
+          coilRead: number(2e3, 1, 2e3),
+          coilUnit: number(1, 1, 2e3),
+          coilFunction: choice("0F", "0F", "05", "auto"),
+          coilWrite: number(1968, 1, 1968),
+          discreteRead: number(2e3, 1, 2e3),
+          discreteUnit: number(1, 1, 2e3),
+          inputRead: number(125, 1, 125),
+          holdingRead: number(125, 1, 125),
+          holdingFunction: choice("10", "10", "06", "auto"),
+          holdingWrite: number(123, 1, 123),
+          wordOrder: choice("low", "low", "high"),
+          broadcast: flag(),
+          turnaround: number(100, 0, 1e4),
+          access: choice("read", "read", "write"),
+          writableRanges: text(),
+          tags: list()
         },
-        "nx-write": {
+        "nx-read": { name: text(), plc: node(), ...READING },
+        "nx-write": { name: text(), plc: node(), ...WRITING },
+        "chino-regulator": {
           name: text(),
-          plc: node(),
-          target: text(),
-          verify: flag(),
-          onFailure: choice("error", "error", "output"),
-          acceptRetained: flag(),
-          coalesce: flag(),
-          topic: choice("item", "item", "keep", "fixed"),
-          topicText: text()
+          regulator: node(),
+          mode: choice("read", "read", "write", "both"),
+          ...READING,
+          ...WRITING
         }
       };
       var VARIABLE = /^\$\{([^}]+)\}$/;
@@ -118,8 +149,12 @@ var nxlineSerialPlc = (() => {
         if (row.kind === "number") return row.says ?? `${row.least} to ${row.most}`;
         return row.known ? row.known.join(", ") : row.kind;
       };
-      var APPLIES = { path: "serial", host: "tcp", port: "tcp" };
-      var applies = (type, name, config) => type !== "plc-line" || !APPLIES[name] || APPLIES[name] === (config.transport || "serial");
+      var TRANSPORTS = { path: "serial", host: "tcp", port: "tcp" };
+      var unused = (mode, name) => mode === "read" && name in WRITING || mode === "write" && name in READING;
+      var applies = (type, name, config) => {
+        if (type === "plc-line") return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || "serial");
+        return type !== "chino-regulator" || !unused(config.mode || "read", name);
+      };
       module.exports = { PROPERTIES, readProperty, allowed, applies };
     }
   });
@@ -141,6 +176,96 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // scripts/editor/widgets.js
+  var require_widgets = __commonJS({
+    "scripts/editor/widgets.js"(exports, module) {
+      "use strict";
+      var { t } = require_texts();
+      var tabs = (id, pages) => {
+        const widget = RED.tabs.create({
+          id,
+          onchange(tab) {
+            $(`#${id}-content`).children().hide();
+            $(`#${tab.id}`).show();
+            $(`#${tab.id}`).trigger("nxline-shown");
+          }
+        });
+        pages.forEach(([page, label]) => widget.addTab({ id: page, label }));
+        return widget;
+      };
+      var keepUnknown = (field, value) => {
+        if (value === void 0 || value === null || value === "") return;
+        const known = field.find("option").filter((_, option) => option.value === String(value)).length > 0;
+        if (!known) field.append($("<option>").attr("value", value).text(value));
+        field.val(String(value));
+      };
+      var fillDefaults = (node, prefix) => {
+        for (const [name, { value }] of Object.entries(node._def.defaults)) {
+          const field = $(`#${prefix}${name}`);
+          if (field.length === 0) continue;
+          if (node[name] === void 0 && value !== "" && !Array.isArray(value)) {
+            if (field.is(":checkbox")) field.prop("checked", value);
+            else field.val(String(value));
+          }
+          if (field.is("select") && !field.prop("multiple") && !name.match(/^(line|plc|regulator)$/)) {
+            keepUnknown(field, node[name] === void 0 ? value : node[name]);
+          }
+        }
+      };
+      var offerRow = ({ value, hint = "", first = "" }) => ({
+        value,
+        label: $("<span>").text(first || value).append(
+          $("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(first ? value : hint)
+        )
+      });
+      var offersFor = (text, offers, usable) => {
+        const wanted = text.trim().toLowerCase();
+        const found = offers.filter((offer) => `${offer.value} ${offer.hint || ""} ${offer.first || ""}`.toLowerCase().includes(wanted)).slice(0, 50);
+        if (wanted === "" || found.length === 0 || !usable(text.trim())) return found;
+        const others = found.filter(({ value }) => value !== text.trim());
+        return others.length === 0 ? [] : [{ value: text.trim() }, ...others];
+      };
+      var suggest = (field, offers, usable) => {
+        field.on("keydown", ({ key }) => {
+          const before = field.val();
+          if (key === "Tab" || key === "Enter") setTimeout(() => field.val() !== before && field.trigger("change"), 0);
+        });
+        field.autoComplete({
+          minLength: 0,
+          search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
+        });
+        field.on("click", () => field.val() === "" && field.trigger("keyup"));
+      };
+      var copyable = (text) => $('<a href="#" class="nxline-copy">').css({ fontFamily: "var(--red-ui-monospace-font)", whiteSpace: "nowrap" }).attr("title", t("editor.copy")).text(text).prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>').on("click", function(event) {
+        event.preventDefault();
+        RED.clipboard.copyText(text, $(this));
+      });
+      var note = () => $('<div class="nxline-note">').css({
+        fontSize: "12px",
+        lineHeight: "16px",
+        minHeight: "16px",
+        color: "var(--red-ui-secondary-text-color)"
+      });
+      var say = (block, text, bad = false) => block.empty().text(text).css("color", bad ? "var(--red-ui-text-color-error)" : "var(--red-ui-secondary-text-color)");
+      var cell = (name, value, { width = "80px", grow = false, shows = t(`column.${name}`), hint = t(`tooltip.${name}`) } = {}) => $('<input type="text">').addClass(`nxline-${name}`).attr({ placeholder: shows, title: hint, "aria-label": t(`column.${name}`) }).css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 }).val(value === void 0 || value === null ? "" : String(value));
+      var pick = (name, value, options) => {
+        const field = $("<select>").addClass(`nxline-${name}`).attr({ title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width: "auto", margin: 0 });
+        options.forEach(([key, label]) => field.append($("<option>").attr("value", key).text(label)));
+        keepUnknown(field, value);
+        return field;
+      };
+      var truthy = (value) => Boolean(value) && value !== "false";
+      var tick = (name, value) => {
+        const box = $('<input type="checkbox">').addClass(`nxline-${name}`).css({ width: "auto", margin: "0 4px 0 0" }).prop("checked", truthy(value));
+        const label = $("<label>").css({ width: "auto", margin: 0, display: "inline-flex", alignItems: "center", whiteSpace: "nowrap" }).attr("title", t(`tooltip.${name}`)).append(box).append(document.createTextNode(t(`column.${name}`)));
+        return { box, label };
+      };
+      var mark = (text) => $("<span>").css({ color: "var(--red-ui-secondary-text-color)", whiteSpace: "nowrap", fontSize: "12px" }).text(text);
+      var flex = (...children) => $("<div>").css({ display: "flex", gap: "4px", alignItems: "center", marginBottom: "3px" }).append(children);
+      module.exports = { tabs, fillDefaults, suggest, offersFor, copyable, note, say, cell, pick, tick, truthy, flex, mark };
+    }
+  });
+
   // lib/error.js
   var require_error = __commonJS({
     "lib/error.js"(exports, module) {
@@ -149,7 +274,7 @@ var nxlineSerialPlc = (() => {
         // --- what the user typed: found before anything is sent
         BAD_ADDRESS: [
           '"{address}" is not an address: {reason}',
-          "Write an area and a number, as in M0, K127.12, W10:float32 or M0..M127."
+          "Write M0, K127.12, W10:float32 or M0..M127 for an NX PLC; 400108, 401001.05, hr107:float32 or 001001..001016 for MODBUS."
         ],
         UNKNOWN_AREA: [
           '"{address}" names the area {area}, which this station does not have',
@@ -157,7 +282,7 @@ var nxlineSerialPlc = (() => {
         ],
         OUT_OF_AREA: [
           '"{address}" lies outside its area: {area} has {range}',
-          "Use an address inside the area, or correct the area table."
+          "Use an address inside the area, or correct the area table, or the address mode."
         ],
         BAD_BIT: ['"{address}" asks for bit {bit}', "Bits are numbered in decimal from 0 to 15."],
         BAD_COUNT: ["{count} {unit} cannot be asked for at once: {reason}", "Ask for {least} to {most}."],
@@ -199,7 +324,7 @@ var nxlineSerialPlc = (() => {
         ],
         FUNCTION_REFUSED: [
           "the function {function} is never sent",
-          "Only the six read and write functions of bits and words are used."
+          "Only the functions that read and write bits and words are used."
         ],
         FRAME_TOO_LONG: ["{what} does not fit into one frame: {got} of at most {most} bytes", "Split it."],
         TOO_MANY: ["{count} {unit} at once are too many: at most {most}", "Split the message."],
@@ -227,6 +352,47 @@ var nxlineSerialPlc = (() => {
         PLC_NO_SERVICE: [
           'station {station} answers "no service"',
           "This CPU does not offer the function. Try the other number of steps."
+        ],
+        MODBUS_ILLEGAL_FUNCTION: [
+          "station {station} answers exception 01: illegal function ({function})",
+          "The device does not have this function. Choose the other write function, or another kind of address."
+        ],
+        MODBUS_ILLEGAL_ADDRESS: [
+          "station {station} answers exception 02: it does not have {address}",
+          "Correct the address or the address mode (1-base, 0-base); a device may also refuse a range that is too long."
+        ],
+        MODBUS_ILLEGAL_VALUE: [
+          "station {station} answers exception 03: illegal data value",
+          "Send a value that the device accepts, or lower the counts per request in the configuration of the regulator."
+        ],
+        MODBUS_DEVICE_FAILURE: [
+          "station {station} answers exception 04: slave device failure",
+          "The device failed while it carried out the request. Look at its display."
+        ],
+        MODBUS_ACKNOWLEDGE: [
+          "station {station} answers exception 05: accepted, but it takes a long time",
+          "Read the result later."
+        ],
+        MODBUS_BUSY: ["station {station} answers exception 06: slave device busy", "Ask again later, or poll less often."],
+        MODBUS_NEGATIVE_ACKNOWLEDGE: [
+          "station {station} answers exception 07: it cannot carry this out",
+          "Look at the mode of the device: it may be in local or program operation."
+        ],
+        MODBUS_MEMORY_PARITY: [
+          "station {station} answers exception 08: memory parity error",
+          "The device found its memory damaged. Have it serviced."
+        ],
+        MODBUS_GATEWAY_PATH: [
+          "station {station} answers exception 0A: the gateway has no path to it",
+          "Correct the configuration of the gateway."
+        ],
+        MODBUS_GATEWAY_TARGET: [
+          "station {station} answers exception 0B: the device behind the gateway does not answer",
+          "Check power, cable and station number behind the gateway."
+        ],
+        MODBUS_EXCEPTION: [
+          "station {station} answers exception {exception}, which the protocol does not name",
+          "Look it up in the manual of the device."
         ],
         // --- the conversation
         TIMEOUT: [
@@ -300,6 +466,18 @@ var nxlineSerialPlc = (() => {
           "{item} was not written: a newer value came while this one waited",
           'Nothing to do; switch "only the latest" off in the node to write every value.'
         ],
+        MIXED_LINE: [
+          "{owner} and {other} cannot share {line}: {reason}",
+          "Change one of the numbers, or give one of them a line of its own."
+        ],
+        BROADCAST_REFUSED: [
+          "{what} cannot be broadcast: {reason}",
+          "Allow broadcasts in the configuration, or address one station."
+        ],
+        BROADCAST_UNCONFIRMED: [
+          "{item} was sent to all stations of {line}; no station acknowledges a broadcast",
+          "Read the stations one by one if you must know."
+        ],
         DUPLICATE_STATION: [
           "{owner} and {other} are both station {station} of {line}",
           "Use one configuration for one PLC, or correct the number."
@@ -338,7 +516,65 @@ var nxlineSerialPlc = (() => {
           this.remedy = fill(row[1], rest);
         }
       };
-      module.exports = { CODES, PlcError };
+      var REFUSAL = /^(PLC|MODBUS)_/;
+      var isRefusal = (error) => typeof error?.code === "string" && REFUSAL.test(error.code);
+      module.exports = { CODES, PlcError, isRefusal };
+    }
+  });
+
+  // lib/device/options.js
+  var require_options = __commonJS({
+    "lib/device/options.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var blank = (value) => value === void 0 || value === null || typeof value === "string" && value.trim() === "";
+      var wholeNumber = (setting, value, { fallback, least, most }) => {
+        if (blank(value)) return fallback;
+        const number = typeof value === "string" ? Number(value) : value;
+        if (Number.isInteger(number) && number >= least && number <= most) return number;
+        throw new PlcError("BAD_SETTING", { setting, value, reason: `a whole number from ${least} to ${most} is needed` });
+      };
+      var choice = (setting, value, known) => {
+        if (blank(value)) return known[0];
+        const found = known.find((each) => String(each) === String(value).trim());
+        if (found !== void 0) return found;
+        throw new PlcError("BAD_SETTING", { setting, value, reason: `known are ${known.join(", ")}` });
+      };
+      var nameOf = (value, station) => blank(value) ? `station ${station}` : String(value).trim();
+      var readRanges = (value, notation) => {
+        const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(",");
+        return given.map((text) => String(text).trim()).filter((text) => text !== "").map((text) => {
+          const { kind, address, count } = notation.parse(text);
+          const size = kind === "word" ? 16 : 1;
+          return { start: address * size, end: (address + count) * size };
+        });
+      };
+      var isOn = (value) => value === true || value === "true";
+      module.exports = { blank, choice, isOn, nameOf, readRanges, wholeNumber };
+    }
+  });
+
+  // lib/device/mixed.js
+  var require_mixed = __commonJS({
+    "lib/device/mixed.js"(exports, module) {
+      "use strict";
+      var ONLY_PLC = 255;
+      var conflict = (nx, modbus) => {
+        const { station } = modbus;
+        if (nx.station === ONLY_PLC) return `NX station ${ONLY_PLC} answers to every number`;
+        if (nx.station === 0) return "NX station 0 is the broadcast of MODBUS";
+        if (station === 0) return "a MODBUS broadcast reaches the NX PLCs too";
+        if (nx.station === station) return `both are station ${station}`;
+        if ((nx.masterIds ?? []).includes(station)) {
+          return `the NX configuration sends as master ID ${station}, which is the number of the regulator`;
+        }
+        return "";
+      };
+      var mixedConflict = (one, other) => {
+        if (one.protocol === other.protocol) return "";
+        return one.protocol === "nx" ? conflict(one, other) : conflict(other, one);
+      };
+      module.exports = { mixedConflict };
     }
   });
 
@@ -1143,35 +1379,44 @@ var nxlineSerialPlc = (() => {
         const key = text.replace(/\.\./g, "_").replace(/\W+/g, "_");
         return /^[A-Za-z_]/.test(key) ? key : `_${key}`;
       };
-      var typeFor = (text, address, typeText) => {
-        const type = parseType(typeText || (address.kind === "bit" ? "bool" : "uint16"));
+      var plainType = (kind) => kind === "bit" ? "bool" : "uint16";
+      var typeFor = (text, { address, typeText, notation }) => {
+        const type = parseType(typeText || plainType(address.kind));
         if (type.kind === address.kind) return type;
+        const packs = address.kind === "bit" && Boolean(notation.packs?.(address));
+        if (packs && type.numeric) return type;
+        const known = packs ? "bool and all numbers" : address.kind === "bit" ? "bool" : "all but bool";
         const reason = address.kind === "bit" ? `${text} is a bit, which is bool` : `${text} is a word, bool needs a bit`;
-        throw new PlcError("BAD_TYPE", { type: type.name, reason, known: address.kind === "bit" ? "bool" : "all but bool" });
+        throw new PlcError("BAD_TYPE", { type: type.name, reason: packs ? `${text} is a bit` : reason, known });
       };
+      var isPacked = ({ kind }, type) => kind === "bit" && type.kind === "word";
+      var widthOf = (address, type) => isPacked(address, type) ? 16 * type.words : type.words;
       var countOf = (text, { address, type, notation }) => {
         const range = address.count > 1;
-        if (range && address.count % type.words !== 0) {
+        const width = widthOf(address, type);
+        const unit = address.kind === "bit" ? "bits" : "words";
+        if (range && address.count % width !== 0) {
           throw new PlcError("BAD_TYPE", {
             type: type.name,
-            reason: `${text} has ${address.count} words, which is no multiple of ${type.words}`,
-            known: `ranges of a multiple of ${type.words} words`
+            reason: `${text} has ${address.count} ${unit}, which is no multiple of ${width}`,
+            known: `ranges of a multiple of ${width} ${unit}`
           });
         }
-        const end = address.address + (range ? address.count : type.words) - 1;
+        const end = address.address + (range ? address.count : width) - 1;
         if (end > notation.last(address)) {
           throw new PlcError("OUT_OF_AREA", {
             address: text,
             area: address.text,
-            range: `${notation.last(address) - address.address + 1} words from there, ${type.name} takes ${type.words}`
+            range: `${notation.last(address) - address.address + 1} ${unit} from there, ${type.name} takes ${width}`
           });
         }
-        return { range, count: range ? address.count / type.words : 1 };
+        return { range, count: range ? address.count / width : 1 };
       };
       var elementsOf = (item, notation) => {
         if (!item.range) return [{ name: item.name, text: item.tag ? item.name : item.addressText }];
         return Array.from({ length: item.count }, (_, index) => {
-          const text = notation.format({ kind: item.kind, address: item.address + index * item.type.words });
+          const { kind, style } = item;
+          const text = notation.format({ kind, style, address: item.address + index * widthOf(item, item.type) });
           return { name: item.tag ? `${item.name}_${index}` : keyOf(text), text };
         });
       };
@@ -1185,7 +1430,7 @@ var nxlineSerialPlc = (() => {
       var parseExpression = (expression, notation, { tag, text = expression } = {}) => {
         const [addressText, written] = splitType(expression.trim());
         const address = notation.parse(addressText.trim());
-        const type = typeFor(expression, address, written || tag?.type);
+        const type = typeFor(expression, { address, typeText: written || tag?.type, notation });
         const item = {
           text,
           name: tag ? tag.name : keyOf(address.text),
@@ -1195,6 +1440,8 @@ var nxlineSerialPlc = (() => {
           ...countOf(expression, { address, type, notation }),
           type,
           throughWord: Boolean(address.throughWord),
+          packed: isPacked(address, type),
+          ...address.style && { style: address.style },
           areaWritable: address.writable,
           ...tagged(tag, notation)
         };
@@ -1207,7 +1454,10 @@ var nxlineSerialPlc = (() => {
       };
       var parseItem = (text, notation) => {
         if (typeof text !== "string" || text.trim() === "") {
-          throw new PlcError("BAD_ITEMS", { reason: "an item is a text such as M0 or a tag name" });
+          const hint = typeof text === "number" ? `, not the number ${text}: write the address in quotes` : "";
+          throw new PlcError("BAD_ITEMS", {
+            reason: `an item is a text such as ${notation.example ?? "M0"} or a tag name${hint}`
+          });
         }
         if (text.length > LONGEST) {
           throw new PlcError("BAD_ADDRESS", {
@@ -1231,7 +1481,7 @@ var nxlineSerialPlc = (() => {
       var distinctNames = (items) => {
         const shared = clashes(items);
         if (shared.size === 0) return items;
-        const plain = (item) => item.tag || item.type.name === "uint16" || item.type.name === "bool" || !shared.has(item.name);
+        const plain = (item) => item.tag || item.type.name === plainType(item.kind) || !shared.has(item.name);
         const suffix = (item) => `_${keyOf(item.type.name).replace(/_$/, "")}`;
         const renamed = items.map(
           (item) => plain(item) ? item : {
@@ -1396,6 +1646,342 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/plan/blocks.js
+  var require_blocks = __commonJS({
+    "lib/plan/blocks.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var order = (a, b) => a.start - b.start || a.end - b.end;
+      var groupsOf = (points) => {
+        const groups = /* @__PURE__ */ new Map();
+        for (const { kind, address, count, point } of points) {
+          const key = `${address} ${count}`;
+          const known = groups.get(key);
+          if (known) known.points.push(point);
+          else groups.set(key, { kind, start: address, end: address + count, points: [point] });
+        }
+        return [...groups.values()].sort(order);
+      };
+      var borders = (bounds) => {
+        const sorted = [...new Set(bounds)].sort((a, b) => a - b);
+        return (start) => {
+          let low = 0;
+          let high = sorted.length;
+          while (low < high) {
+            const middle = low + high >> 1;
+            if (sorted[middle] > start) high = middle;
+            else low = middle + 1;
+          }
+          return low < sorted.length ? sorted[low] : Infinity;
+        };
+      };
+      var blocksOf = (groups, { most, bounds }) => {
+        const borderAfter = borders(bounds);
+        const blocks = [];
+        let block = null;
+        let border = Infinity;
+        for (const group of groups) {
+          const { kind, start, end } = group;
+          if (end - start > most)
+            throw new PlcError("FRAME_TOO_LONG", { what: `one value of ${kind}s`, got: end - start, most });
+          if (block && start <= block.end && end <= Math.max(border, block.end) && end - block.start <= most) {
+            block.end = Math.max(block.end, end);
+            block.groups.push(group);
+          } else {
+            block = { kind, start, end, groups: [group] };
+            border = borderAfter(start);
+            blocks.push(block);
+          }
+        }
+        return blocks;
+      };
+      var partsOf = ({ kind, groups }) => {
+        const parts = [];
+        for (const group of groups) {
+          const last = parts.at(-1);
+          if (last && group.start < last.end) {
+            last.end = Math.max(last.end, group.end);
+            last.groups.push(group);
+          } else parts.push({ kind, start: group.start, end: group.end, groups: [group] });
+        }
+        return parts;
+      };
+      module.exports = { blocksOf, groupsOf, partsOf };
+    }
+  });
+
+  // lib/plan/share.js
+  var require_share = __commonJS({
+    "lib/plan/share.js"(exports, module) {
+      "use strict";
+      var itemsOf = (block) => block.end - block.start;
+      var fits = (block, mixed) => block.end - 1 <= mixed.last[block.kind];
+      var bestCount = (candidates, { mixed, frameCost, ownCost, sharedCost }) => {
+        let own = candidates.reduce((sum, block) => sum + frameCost + ownCost(block), 0);
+        let items = 0;
+        let bytes = 0;
+        let shared = 0;
+        let best = { count: 0, cost: own };
+        candidates.forEach((block, index) => {
+          own -= frameCost + ownCost(block);
+          items += itemsOf(block);
+          bytes += mixed.size(block);
+          shared += sharedCost(block);
+          const frames = Math.max(Math.ceil(items / mixed.items), Math.ceil(bytes / mixed.bytes));
+          const cost = own + shared + frames * frameCost;
+          if (cost < best.cost) best = { count: index + 1, cost };
+        });
+        return best.count;
+      };
+      var pack = (parts, mixed) => {
+        const frames = [];
+        let firstOpen = 0;
+        for (const part of [...parts].sort((a, b) => itemsOf(b) - itemsOf(a) || a.start - b.start)) {
+          const items = itemsOf(part);
+          const bytes = mixed.size(part);
+          let frame = null;
+          for (let at = firstOpen; at < frames.length && !frame; at++) {
+            const { items: used, bytes: full } = frames[at];
+            if (used + items <= mixed.items && full + bytes <= mixed.bytes) frame = frames[at];
+          }
+          if (!frame) frames.push(frame = { items: 0, bytes: 0, parts: [] });
+          frame.items += items;
+          frame.bytes += bytes;
+          frame.parts.push(part);
+          while (firstOpen < frames.length && frames[firstOpen].items === mixed.items) firstOpen++;
+        }
+        return frames.map((frame) => frame.parts.sort((a, b) => a.kind.localeCompare(b.kind) || a.start - b.start));
+      };
+      var share = (blocks, { mixed, frameCost, ownCost, sharedCost, partsOf }) => {
+        const small = (block) => fits(block, mixed) && partsOf(block).every((part) => partFits(part, mixed));
+        const candidates = blocks.filter(small).sort((a, b) => mixed.size(a) - mixed.size(b) || a.start - b.start);
+        const count = bestCount(candidates, { mixed, frameCost, ownCost, sharedCost });
+        const chosen = new Set(candidates.slice(0, count));
+        const frames = pack([...chosen].flatMap(partsOf), mixed);
+        const alone = frames.filter((parts) => parts.length === 1).flat();
+        return {
+          own: [...blocks.filter((block) => !chosen.has(block)), ...alone],
+          shared: frames.filter((parts) => parts.length > 1)
+        };
+      };
+      var partFits = (part, mixed) => itemsOf(part) <= mixed.items && mixed.size(part) <= mixed.bytes;
+      module.exports = { share };
+    }
+  });
+
+  // lib/plan/reads.js
+  var require_reads = __commonJS({
+    "lib/plan/reads.js"(exports, module) {
+      "use strict";
+      var { blocksOf, groupsOf, partsOf } = require_blocks();
+      var { share } = require_share();
+      var LAST_MIXED = 16383;
+      var FRAME_COST = 60;
+      var servedBy = (groups, placeOf) => groups.flatMap((group) => group.points.map((point) => ({ point, at: placeOf(group), count: group.end - group.start })));
+      var ownRequest = ({ kind, start, end, groups }) => ({
+        ask: kind === "bit" ? "readBits" : "readWords",
+        base: start,
+        count: end - start,
+        points: servedBy(groups, (group) => group.start - start)
+      });
+      var sharedRequest = (parts) => {
+        const places = /* @__PURE__ */ new Map();
+        for (const { kind, start, end } of parts) {
+          for (let address = start; address < end; address++) {
+            const key = `${kind}${address}`;
+            if (!places.has(key)) places.set(key, { at: places.size, kind, address });
+          }
+        }
+        const addresses = [...places.values()].map(({ kind, address }) => ({ kind, address }));
+        const placeOf = (group) => places.get(`${group.kind}${group.start}`).at;
+        return {
+          ask: "readMixed",
+          addresses,
+          points: servedBy(
+            parts.flatMap((part) => part.groups),
+            placeOf
+          )
+        };
+      };
+      var blocksFor = (points, kind, limits) => {
+        const { readBits, readWords, info, bounds = [] } = limits;
+        const most = kind === "bit" ? Math.min(readBits, info) : Math.min(readWords, info >> 1);
+        const chosen = points.map(({ kind: each, address, count = 1 }, point) => ({ kind: each, address, count, point })).filter((point) => point.kind === kind);
+        return blocksOf(groupsOf(chosen), { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
+      };
+      var items = ({ start, end }) => end - start;
+      var planReads = (points, limits) => {
+        const blocks = [...blocksFor(points, "word", limits), ...blocksFor(points, "bit", limits)];
+        const most = Math.min(limits.readMixed, limits.info >> 1);
+        const { own, shared } = share(blocks, {
+          mixed: {
+            items: most,
+            bytes: 2 * most,
+            last: { bit: LAST_MIXED, word: LAST_MIXED },
+            size: (block) => 2 * items(block)
+          },
+          frameCost: limits.frameCost ?? FRAME_COST,
+          // the third byte is left out, so that a mixed request for one address is never the cheaper one
+          ownCost: (block) => 2 + items(block) * (block.kind === "bit" ? 1 : 2),
+          sharedCost: (block) => items(block) * (block.kind === "bit" ? 3 : 4),
+          partsOf
+        });
+        return [...own.map(ownRequest), ...shared.map(sharedRequest)];
+      };
+      module.exports = { FRAME_COST, LAST_MIXED, planReads };
+    }
+  });
+
+  // lib/plan/writes.js
+  var require_writes = __commonJS({
+    "lib/plan/writes.js"(exports, module) {
+      "use strict";
+      var { blocksOf, groupsOf, partsOf } = require_blocks();
+      var { LAST_MIXED } = require_reads();
+      var { share } = require_share();
+      var MANY = 1e6;
+      var roundsOf = (points) => {
+        const rounds = [];
+        const lastOfBit = /* @__PURE__ */ new Map();
+        const lastOfWord = /* @__PURE__ */ new Map();
+        points.forEach((point, index) => {
+          let round = 0;
+          const places = point.values.map((_, at) => point.address + at);
+          for (const place of places) round = Math.max(round, lastTouch(point.kind, place, { lastOfBit, lastOfWord }) + 1);
+          for (const place of places) touch(point.kind, place, { lastOfBit, lastOfWord, round });
+          (rounds[round] ?? (rounds[round] = [])).push({ ...point, point: index });
+        });
+        return rounds;
+      };
+      var lastTouch = (kind, place, { lastOfBit, lastOfWord }) => {
+        if (kind === "bit") return Math.max(lastOfBit.get(place) ?? -1, lastOfWord.get(place >> 4) ?? -1);
+        const bits = Array.from({ length: 16 }, (_, bit) => lastOfBit.get(place * 16 + bit) ?? -1);
+        return Math.max(lastOfWord.get(place) ?? -1, ...bits);
+      };
+      var touch = (kind, place, { lastOfBit, lastOfWord, round }) => {
+        ;
+        (kind === "bit" ? lastOfBit : lastOfWord).set(place, round);
+      };
+      var blocksFor = (points, kind, limits) => {
+        const { writeBits, writeWords, info, bounds = [] } = limits;
+        const most = kind === "bit" ? Math.min(writeBits, info - 2) : Math.min(writeWords, info - 2 >> 1);
+        const chosen = points.filter((point) => point.kind === kind).map((point) => ({ ...point, count: point.values.length }));
+        return blocksOf(groupsOf(chosen), { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
+      };
+      var items = ({ start, end }) => end - start;
+      var pointsOf = (parts) => parts.flatMap((part) => part.groups.flatMap((group) => group.points)).sort((a, b) => a - b);
+      var ownRequest = (block, valueAt) => {
+        const values = Array.from({ length: items(block) }, (_, at) => valueAt(block.kind, block.start + at));
+        const ask = block.kind === "bit" ? "writeBits" : "writeWords";
+        return (
+          /** @type {WriteRequest} */
+          { ask, base: block.start, values, points: pointsOf([block]) }
+        );
+      };
+      var sharedRequest = (parts, valueAt) => ({
+        ask: "writeMixed",
+        writes: parts.flatMap(
+          ({ kind, start, end }) => Array.from({ length: end - start }, (_, at) => ({ kind, address: start + at, value: valueAt(kind, start + at) }))
+        ),
+        points: pointsOf(parts)
+      });
+      var planRound = (points, limits) => {
+        const values = /* @__PURE__ */ new Map();
+        for (const { kind, address, values: given } of points) {
+          given.forEach((value, at) => values.set(`${kind}${address + at}`, value));
+        }
+        const valueAt = (kind, address) => values.get(`${kind}${address}`);
+        const { own, shared } = share([...blocksFor(points, "word", limits), ...blocksFor(points, "bit", limits)], {
+          mixed: {
+            items: limits.writeMixed,
+            bytes: limits.info,
+            last: { bit: LAST_MIXED, word: LAST_MIXED },
+            size: (block) => items(block) * (block.kind === "bit" ? 3 : 4)
+          },
+          frameCost: MANY,
+          ownCost: (block) => 2 + items(block) * (block.kind === "bit" ? 1 : 2),
+          sharedCost: (block) => items(block) * (block.kind === "bit" ? 3 : 4),
+          partsOf
+        });
+        return [...own.map((block) => ownRequest(block, valueAt)), ...shared.map((parts) => sharedRequest(parts, valueAt))];
+      };
+      var planRounds = (rounds, limits) => rounds.flatMap((round) => planRound(round, limits));
+      var planWrites = (points, limits) => planRounds(roundsOf(points), limits);
+      module.exports = { planRounds, planWrites, roundsOf };
+    }
+  });
+
+  // lib/plan/tables.js
+  var require_tables = __commonJS({
+    "lib/plan/tables.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { planReads } = require_reads();
+      var { planRounds, roundsOf } = require_writes();
+      var WIDE = 1048576;
+      var limitsOf = ({ read, write }) => ({
+        readBits: read,
+        readWords: read,
+        readMixed: 0,
+        writeBits: write,
+        writeWords: write,
+        writeMixed: 0,
+        info: WIDE
+      });
+      var within = ({ kind, from, to }, points) => points.map((point, index) => ({ point, index })).filter(({ point }) => point.kind === kind && from <= point.address && point.address < to);
+      var planTables = (points, tables) => tables.flatMap((table) => {
+        const own = within(table, points);
+        const requests = planReads(
+          own.map(({ point }) => point),
+          limitsOf(table)
+        );
+        return requests.map((request) => ({
+          ...request,
+          points: request.points.map((each) => ({ ...each, point: own[each.point].index }))
+        }));
+      });
+      var bitsOfWords = (points) => {
+        const words = /* @__PURE__ */ new Map();
+        for (const { address, values, point } of points) {
+          values.forEach((value, at) => {
+            const base = address + at >> 4;
+            const bit = 1 << (address + at & 15);
+            const request = words.get(base) ?? { ask: "writeBitsOfWord", base, mask: 0, value: 0, points: [] };
+            request.mask |= bit;
+            if (value) request.value |= bit;
+            if (!request.points.includes(point)) request.points.push(point);
+            words.set(base, request);
+          });
+        }
+        return [...words.values()].sort((a, b) => a.base - b.base);
+      };
+      var planRound = (points, tables) => {
+        const plain = points.filter((point) => !point.through);
+        const requests = tables.flatMap((table) => {
+          const own = within(table, plain).map(({ point }) => point);
+          if (own.length > 0 && table.write === 0) {
+            throw new PlcError("FRAME_TOO_LONG", { what: `a write of ${table.kind}s`, got: own.length, most: 0 });
+          }
+          return planRounds([own], limitsOf(table));
+        });
+        return [...requests, ...bitsOfWords(points.filter((point) => point.through))];
+      };
+      var planTableWrites = (points, tables) => roundsOf(points).flatMap((round) => planRound(round, tables));
+      module.exports = { planTableWrites, planTables };
+    }
+  });
+
+  // lib/plan/index.js
+  var require_plan = __commonJS({
+    "lib/plan/index.js"(exports, module) {
+      "use strict";
+      var { planReads } = require_reads();
+      var { planTableWrites, planTables } = require_tables();
+      var { planWrites } = require_writes();
+      module.exports = { planReads, planTableWrites, planTables, planWrites };
+    }
+  });
+
   // lib/device/settings.js
   var require_settings = __commonJS({
     "lib/device/settings.js"(exports, module) {
@@ -1404,22 +1990,12 @@ var nxlineSerialPlc = (() => {
       var { masterIdList } = require_ids();
       var { limitsOf } = require_limits();
       var { nxNotation } = require_nx_notation();
+      var { describeAddress } = require_address();
+      var { planReads, planWrites } = require_plan();
+      var { choice, isOn, nameOf, readRanges, wholeNumber } = require_options();
       var LAST_STATION = 191;
       var ANY_STATION = 255;
       var GAP = 10;
-      var blank = (value) => value === void 0 || value === null || typeof value === "string" && value.trim() === "";
-      var wholeNumber = (setting, value, { fallback, least, most }) => {
-        if (blank(value)) return fallback;
-        const number = typeof value === "string" ? Number(value) : value;
-        if (Number.isInteger(number) && number >= least && number <= most) return number;
-        throw new PlcError("BAD_SETTING", { setting, value, reason: `a whole number from ${least} to ${most} is needed` });
-      };
-      var choice = (setting, value, known) => {
-        if (blank(value)) return known[0];
-        const found = known.find((each) => String(each) === String(value).trim());
-        if (found !== void 0) return found;
-        throw new PlcError("BAD_SETTING", { setting, value, reason: `known are ${known.join(", ")}` });
-      };
       var readStation = (value) => {
         const number = typeof value === "string" && /^\s*\d{1,3}\s*$/.test(value) ? Number(value) : value;
         if (typeof number !== "number" || !Number.isInteger(number) || number < 0 || number > 255) {
@@ -1434,20 +2010,34 @@ var nxlineSerialPlc = (() => {
         return number;
       };
       var markHex = (value) => typeof value === "string" ? value.replace(/(?<![$\w])(?=\d?[a-f])[\da-f]{2}(?!\w)/gi, "0x$&") : value;
+      var masterIdsOf = (value, stations = []) => masterIdList(markHex(value), { stations });
       var boundsOf = (areas) => areas.list.flatMap(({ base, words }) => [base, base + words]);
       var frameCost = ({ steps, gap, character }) => {
         const frames = steps === 4 ? 26 : 12;
         const silence = (steps === 4 ? 2 * gap + 10 : gap + 5) / character;
         return Math.round(frames + silence);
       };
-      var readRanges = (value, notation) => {
-        const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(",");
-        return given.map((text) => String(text).trim()).filter((text) => text !== "").map((text) => {
-          const { kind, address, count } = notation.parse(text);
-          const size = kind === "word" ? 16 : 1;
-          return { start: address * size, end: (address + count) * size };
-        });
+      var SPLITS = /* @__PURE__ */ new Set(["PLC_OUT_OF_RANGE", "PLC_FRAME_TOO_LONG"]);
+      var ABSENT = /* @__PURE__ */ new Set(["PLC_OUT_OF_RANGE"]);
+      var UNKNOWN_FUNCTION = /* @__PURE__ */ new Set(["PLC_WRONG_FUNCTION", "PLC_NO_SERVICE"]);
+      var planOf = (given) => {
+        let limits = given;
+        return {
+          reads: (points) => planReads(points, limits),
+          writes: (points) => planWrites(points, limits),
+          splits: SPLITS,
+          absent: ABSENT,
+          simpler: ({ ask }, { code }) => {
+            if (ask !== "readMixed" || !UNKNOWN_FUNCTION.has(code)) return false;
+            limits = { ...limits, readMixed: 0 };
+            return true;
+          }
+        };
       };
+      var REASONS = Object.freeze({
+        area: "its area is unconfirmed or not for writing; confirm its row in the area table first",
+        throughWord: "its area has only words: a single bit of it cannot be written"
+      });
       var readSettings = (given, character) => {
         const station = readStation(given.station);
         const steps = (
@@ -1461,23 +2051,291 @@ var nxlineSerialPlc = (() => {
         const stations = [...given.stations ?? [], station];
         const limits = limitsOf(given.limits);
         return {
+          protocol: "nx",
           station,
           steps,
           gap,
-          name: blank(given.name) ? `station ${station}` : String(given.name).trim(),
+          name: nameOf(given.name, station),
           timeout: wholeNumber("timeout", given.timeout, { fallback: 3e3, least: 10, most: 6e5 }),
           attempts: wholeNumber("attempts", given.attempts, { fallback: 3, least: 1, most: 20 }),
-          masterIds: masterIdList(markHex(given.masterIds), { stations }),
-          soleMaster: given.soleMaster === true || given.soleMaster === "true",
+          masterIds: masterIdsOf(given.masterIds, stations),
+          soleMaster: isOn(given.soleMaster),
           access: choice("access", given.access, ["read", "write"]),
           ranges: readRanges(given.writableRanges, notation),
           deadline: wholeNumber("deadline", given.deadline, { fallback: 0, least: 0, most: 36e5 }),
           notation,
           limits,
-          planLimits: { ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) }
+          reasons: REASONS,
+          describe: (place, { write }) => describeAddress(place, { steps, write }),
+          plan: planOf({ ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) })
         };
       };
-      module.exports = { readSettings, readStation };
+      module.exports = { masterIdsOf, readSettings, readStation };
+    }
+  });
+
+  // lib/codec/modbus/functions.js
+  var require_functions2 = __commonJS({
+    "lib/codec/modbus/functions.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var FUNCTIONS = table([
+        // fn  table  unit    request      most  answer  reads
+        [1, "co", "bits", "block", 2e3, "bits", true],
+        [2, "di", "bits", "block", 2e3, "bits", true],
+        [3, "hr", "words", "block", 125, "words", true],
+        [4, "ir", "words", "block", 125, "words", true],
+        [5, "co", "bits", "single", 1, "echo", false],
+        [6, "hr", "words", "single", 1, "echo", false],
+        [15, "co", "bits", "multiple", 1968, "echo", false],
+        [16, "hr", "words", "multiple", 123, "echo", false]
+      ]);
+      function table(rows) {
+        return Object.freeze(
+          rows.map(
+            ([fn, name, unit, request, most, answer, reads]) => Object.freeze({ fn, table: name, unit, request, most, answer, reads })
+          )
+        );
+      }
+      var EXCEPTION = 128;
+      var byNumber = new Map(FUNCTIONS.map((row) => [row.fn, row]));
+      var find = (name, request) => (
+        /** @type {FunctionRow} */
+        FUNCTIONS.find((row) => row.table === name && row.request === request) ?? null
+      );
+      function functionOf(fn) {
+        const row = byNumber.get(
+          /** @type {number} */
+          fn
+        );
+        if (!row) throw new PlcError("FUNCTION_REFUSED", { function: String(fn) });
+        return row;
+      }
+      var functionByNumber = (fn) => byNumber.get(fn);
+      var readFunction = (name) => find(name, "block").fn;
+      var writeFunction = (name, { single }) => find(name, single ? "single" : "multiple")?.fn ?? null;
+      module.exports = { EXCEPTION, FUNCTIONS, functionByNumber, functionOf, readFunction, writeFunction };
+    }
+  });
+
+  // lib/codec/modbus/address.js
+  var require_address2 = __commonJS({
+    "lib/codec/modbus/address.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { readFunction, writeFunction } = require_functions2();
+      var SIZE = 65536;
+      var MOST_CHARACTERS = 64;
+      var MOST_RANGE = 4096;
+      var TABLES = Object.freeze(
+        /** @type {[TableName, string, 'bit'|'word', string, number, boolean][]} */
+        [
+          ["co", "coil", "bit", "0", 2097152, true],
+          ["di", "discrete input", "bit", "1", 2162688, false],
+          ["ir", "input register", "word", "3", 65536, false],
+          ["hr", "holding register", "word", "4", 0, true]
+        ].map(
+          ([table, name, kind, digit, base, writable]) => Object.freeze({ table, name, kind, digit, base, writable, size: SIZE })
+        )
+      );
+      var byDigit = new Map(TABLES.map((row) => [row.digit, row]));
+      var byName = new Map(TABLES.map((row) => [row.table, row]));
+      var PANEL = /^(\d+)(?:\.(\d*))?$/;
+      var EXPLICIT = /^(co|di|ir|hr)(\d+)(?:\.(\d*))?$/;
+      var rowOf = (table) => (
+        /** @type {any} */
+        byName.get(
+          /** @type {TableName} */
+          table
+        )
+      );
+      function parseAddress(text, { addressMode = "1-base" } = {}) {
+        if (typeof text === "number") throw bad(text, 'a number loses its zeros; write the address in quotes, as in "010197"');
+        if (typeof text !== "string") throw bad("", "it is not text");
+        const clean = text.trim();
+        if (clean === "") throw bad(text, "it is empty");
+        if (clean.length > MOST_CHARACTERS)
+          throw bad(`${clean.slice(0, 20)}…`, `it has more than ${MOST_CHARACTERS} characters`);
+        const [first, last, more] = clean.split(/\s*\.\.\s*/);
+        if (more !== void 0) throw bad(clean, "a range has two ends");
+        const from = parseOne(first, clean, addressMode);
+        if (last === void 0) return finish(from, 1, addressMode);
+        return range(from, parseOne(last, clean, addressMode), { clean, addressMode });
+      }
+      function range(from, to, { clean, addressMode }) {
+        if (from.row !== to.row) throw bad(clean, `one end is a ${from.row.name}, the other a ${to.row.name}`);
+        if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a register");
+        if (from.style !== to.style) throw bad(clean, "both ends must be written in the same way");
+        const count = to.address - from.address + 1;
+        if (count < 1) throw bad(clean, "the range runs backwards");
+        if (count > MOST_RANGE) {
+          const reason = "the range is too long";
+          throw new PlcError("BAD_COUNT", { count, unit: `${from.kind}s`, reason, least: 1, most: MOST_RANGE });
+        }
+        return finish(from, count, addressMode);
+      }
+      var FORMS = "like 400108, 40108 or hr107";
+      function parseOne(part, whole, addressMode) {
+        const clean = part.trim().toLowerCase();
+        const explicit = EXPLICIT.exec(clean);
+        if (explicit) {
+          const [, name, digits2, bit2] = explicit;
+          return place(rowOf(name), Number(digits2), { bit: bit2, whole, style: "explicit", first: 0 });
+        }
+        const found = PANEL.exec(clean);
+        if (!found) throw bad(whole, part === "" ? "one end of the range is missing" : `it is not ${FORMS}`);
+        const [, digits, bit] = found;
+        if (digits.length !== 5 && digits.length !== 6) throw bad(whole, digitsReason(digits));
+        const row = byDigit.get(digits[0]);
+        if (!row)
+          throw bad(
+            whole,
+            `the first digit is ${digits[0]}, not 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)`
+          );
+        return place(row, Number(digits.slice(1)), { bit, whole, style: "panel", first: addressMode === "0-base" ? 0 : 1 });
+      }
+      var digitsReason = (digits) => {
+        const count = digits.length === 1 ? "1 digit" : `${digits.length} digits`;
+        const hint = digits.length < 5 ? `; a zero in front may have been lost, as in ${digits.padStart(6, "0")}` : "";
+        return `it has ${count} instead of 6 or 5${hint}`;
+      };
+      function place(row, number, { bit, whole, style, first }) {
+        const wire = number - first;
+        if (!(wire >= 0 && wire < SIZE)) {
+          const numbers = `${first}..${SIZE - 1 + first}`;
+          throw new PlcError("OUT_OF_AREA", {
+            address: whole,
+            area: `the table of ${row.name}s`,
+            range: `the numbers ${numbers}`
+          });
+        }
+        if (bit === void 0) return { kind: row.kind, address: row.base + wire, row, style };
+        if (row.kind === "bit") throw bad(whole, `a ${row.name} is a bit: nothing follows its number`);
+        return { kind: "bit", address: (row.base + wire) * 16 + bitOf(bit, whole), row, style };
+      }
+      function bitOf(digits, whole) {
+        if (digits.length !== 2) {
+          const hint = digits.length === 1 ? `: .${digits} could be .0${digits} or .${digits}0` : "";
+          throw bad(whole, `a bit of a register has two digits, .00 to .15${hint}`);
+        }
+        if (Number(digits) > 15) throw new PlcError("BAD_BIT", { address: whole, bit: Number(digits) });
+        return Number(digits);
+      }
+      function finish({ kind, address, row, style }, count, addressMode) {
+        const through = kind === "bit" && row.kind === "word";
+        const result = {
+          kind,
+          address,
+          count,
+          table: row.table,
+          wire: placeOf(kind, address).wire,
+          text: formatAddress({ kind, address, count, style }, { addressMode }),
+          style,
+          writable: row.writable,
+          certainty: "certain"
+        };
+        if (through) result.throughWord = { address: address >> 4, bit: address & 15, writable: row.writable };
+        return result;
+      }
+      function placeOf(kind, address) {
+        const at = (name, number) => TABLES.find((row) => row.kind === name && number >= row.base && number < row.base + SIZE);
+        const own = Number.isInteger(address) ? at(kind, address) : void 0;
+        if (own) return { table: own.table, wire: address - own.base };
+        const word = kind === "bit" && Number.isInteger(address) && address >= 0 ? at("word", address >> 4) : void 0;
+        if (word) return { table: word.table, wire: (address >> 4) - word.base, bit: address & 15 };
+        throw bad(String(address), `no ${kind} has this absolute address`);
+      }
+      function formatAddress({ kind, address, count = 1, style = "panel" }, { addressMode = "1-base" } = {}) {
+        const one = (at) => {
+          const { table, wire, bit } = placeOf(kind, at);
+          const tail = bit === void 0 ? "" : `.${String(bit).padStart(2, "0")}`;
+          if (style === "explicit") return `${table}${wire}${tail}`;
+          const number = addressMode === "0-base" ? wire : wire + 1;
+          return `${rowOf(table).digit}${String(number).padStart(5, "0")}${tail}`;
+        };
+        return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
+      }
+      function describeAddress({ kind, address, count = 1 }, options = {}) {
+        const first = placeOf(kind, address);
+        const last = placeOf(kind, address + count - 1);
+        const row = rowOf(first.table);
+        const span = spanOf(first.wire, last.wire);
+        const read = hex(readFunction(first.table), 2);
+        if (options.write && !row.writable) return `${row.name}s cannot be written`;
+        const code = options.write ? writeCode(first.table, last.wire - first.wire + 1, options) : read;
+        if (first.bit === void 0) return `function ${code}, ${span}`;
+        if (options.write) return `functions ${read} and ${code}, read-modify-write of ${span}`;
+        return `function ${code}, ${span}, ${count === 1 ? `bit ${first.bit}` : `${count} bits`}`;
+      }
+      function writeCode(table, count, { coilFunction = "0F", holdingFunction = "10" }) {
+        const chosen = table === "co" ? coilFunction : holdingFunction;
+        const single = chosen === "05" || chosen === "06" || chosen === "auto" && count === 1;
+        return hex(
+          /** @type {number} */
+          writeFunction(table, { single }),
+          2
+        );
+      }
+      var spanOf = (first, last) => first === last ? `wire address ${first} (${hex(first)}h)` : `wire addresses ${first}–${last} (${hex(first)}h–${hex(last)}h)`;
+      var hex = (value, digits = 4) => value.toString(16).toUpperCase().padStart(digits, "0");
+      var bad = (address, reason) => new PlcError("BAD_ADDRESS", { address: String(address), reason });
+      module.exports = { TABLES, describeAddress, formatAddress, parseAddress, placeOf, spanOf };
+    }
+  });
+
+  // lib/tag/modbus-notation.js
+  var require_modbus_notation = __commonJS({
+    "lib/tag/modbus-notation.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { formatAddress, parseAddress, placeOf, TABLES } = require_address2();
+      var { readTags } = require_tags();
+      var MODES = ["1-base", "0-base"];
+      var lastOf = ({ kind, address }) => {
+        const { table, bit } = placeOf(kind, address);
+        const row = (
+          /** @type {any} */
+          TABLES.find((each) => each.table === table)
+        );
+        const last = row.base + row.size - 1;
+        return bit === void 0 ? last : last * 16 + 15;
+      };
+      var DIGITS = /^\d+$/;
+      var BIT_OF_REGISTER = /^\d{5,6}\.\d$/;
+      var LAST_NUMBER = 65536;
+      var doubtOf = (text, isBit) => {
+        if (BIT_OF_REGISTER.test(text)) return `${text} may have been ${text}0: a bit has two digits`;
+        if (!DIGITS.test(text)) return "";
+        if (isBit && /^(3|4)(\d{4}|\d{5})$/.test(text)) return `${text} is a register; it may have been the bit ${text}.00`;
+        if (text.length < 5) return `${text} may have been ${text.padStart(6, "0")}: it has too few digits`;
+        const eaten = text.length === 5 && text[0] !== "0" && Number(text) <= LAST_NUMBER;
+        return eaten ? `${text} may have been 0${text}, a coil: write six digits to be sure` : "";
+      };
+      var doubtsOf = (row) => {
+        const [address, type = ""] = String(row.address ?? "").split(":");
+        const isBit = [type, row.type].some((each) => /^\s*bool\s*$/i.test(String(each ?? "")));
+        const doubts = address.split("..").map((end) => doubtOf(end.trim(), isBit));
+        return [...new Set(doubts.filter(Boolean))];
+      };
+      var modbusNotation = ({ addressMode = "1-base", tags, wordOrder = "low", byteOrder = "high" } = {}) => {
+        if (!MODES.includes(addressMode)) {
+          const reason = `it must be ${MODES.join(" or ")}`;
+          throw new PlcError("BAD_SETTING", { setting: "addressMode", value: addressMode, reason });
+        }
+        const notation = {
+          addressMode,
+          example: "400108",
+          parse: (text) => parseAddress(text, { addressMode }),
+          format: (at) => formatAddress(at, { addressMode }),
+          last: lastOf,
+          packs: (address) => address.kind === "bit" && !address.throughWord,
+          doubts: doubtsOf,
+          wordOrder,
+          byteOrder
+        };
+        return { ...notation, tags: readTags(tags, notation) };
+      };
+      module.exports = { modbusNotation };
     }
   });
 
@@ -1486,7 +2344,10 @@ var nxlineSerialPlc = (() => {
     "scripts/editor/model.js"(exports, module) {
       "use strict";
       var { functionOf, queryCode } = require_functions();
+      var { TABLES, placeOf } = require_address2();
+      var { readFunction, writeFunction } = require_functions2();
       var { parseItem } = require_item();
+      var { modbusNotation } = require_modbus_notation();
       var { nxNotation } = require_nx_notation();
       var { t } = require_texts();
       var attempt = (make, otherwise) => {
@@ -1496,21 +2357,6 @@ var nxlineSerialPlc = (() => {
           return otherwise;
         }
       };
-      var notationOf = (areas) => nxNotation({ areas: areas || [] });
-      var usableTags = (areas, tags) => {
-        const names = /* @__PURE__ */ new Set();
-        return tags.filter((row) => {
-          const [name] = attempt(() => [...nxNotation({ areas, tags: [row] }).tags.keys()], []);
-          return name !== void 0 && !names.has(name) && names.add(name);
-        });
-      };
-      var notationWithTags = (plc) => {
-        const { areas: rows, tags } = plc || {};
-        const areas = attempt(() => notationOf(rows) && rows, []) || [];
-        return attempt(() => nxNotation({ areas, tags: tags || [] }), null) || nxNotation({ areas, tags: usableTags(areas, Array.isArray(tags) ? tags : []) });
-      };
-      var plcLabel = (plc) => t("editor.station", { station: plc.station === "" ? "?" : plc.station });
-      var plcName = (plc) => plc.name || plcLabel(plc);
       var hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, "0");
       var unitOf = (item, bits) => {
         const number = item.kind === "word" ? item.count * item.type.words : item.count;
@@ -1518,15 +2364,90 @@ var nxlineSerialPlc = (() => {
         if (number === 1) return t(bits ? "editor.bit" : "editor.word");
         return t(bits ? "editor.bits" : "editor.words", { number });
       };
-      var describe = (item, { steps = 2, write = false } = {}) => {
+      var describeNx = (item, { steps = 2 }, write) => {
         const bits = item.kind === "bit" && !item.throughWord;
         const row = functionOf((write ? "write" : "read") + (bits ? "Bits" : "Words"));
         const code = hex(queryCode(row, String(steps) === "4" ? 4 : 2), 2);
         const address = hex(item.throughWord ? Math.floor(item.address / 16) : item.address, 4);
         return t("editor.goesOut", { code, address, what: unitOf(item, bits) });
       };
+      var lengthOf = ({ kind, count, type, packed }) => count * (kind === "word" || packed ? type.words : 1) * (packed ? 16 : 1);
+      var SINGLE = { "05": () => true, "06": () => true, auto: (count) => count === 1 };
+      var writeCode = (table, count, { coilFunction = "0F", holdingFunction = "10" }) => {
+        const chosen = table === "co" ? coilFunction : holdingFunction;
+        const single = SINGLE[chosen] ? SINGLE[chosen](count) : false;
+        return hex(writeFunction(table, { single }), 2);
+      };
+      var whereOf = (first, last) => {
+        const values = { first, last, firstHex: hex(first, 4), lastHex: hex(last, 4) };
+        return t(first === last ? "editor.wire" : "editor.wires", values);
+      };
+      var isWritable = (table) => TABLES.find((row) => row.table === table).writable;
+      var describeModbus = (item, device, write) => {
+        const length = lengthOf(item);
+        const { table, wire, bit } = placeOf(item.kind, item.address);
+        const last = placeOf(item.kind, item.address + length - 1).wire;
+        const where = whereOf(wire, last);
+        const read = hex(readFunction(table), 2);
+        if (write && !isWritable(table)) return t("editor.readable");
+        const code = write ? writeCode(table, last - wire + 1, device) : read;
+        if (bit === void 0) return t("editor.sent", { code, where });
+        if (write) return t("editor.changed", { read, code, where });
+        const bits = length === 1 ? t("editor.oneBit", { number: bit }) : t("editor.severalBits", { number: length });
+        return `${t("editor.sent", { code, where })}, ${bits}`;
+      };
+      var oneOf = (value, known) => known.includes(value) ? value : known[0];
+      var DEVICES = {
+        "nx-config": {
+          label: "editor.station",
+          notation: ({ areas }, tags) => nxNotation({ areas: areas || [], tags }),
+          // faulty area rows count as none
+          usable: (device) => ({ areas: attempt(() => nxNotation({ areas: device.areas || [] }) && device.areas, []) || [] }),
+          describe: describeNx
+        },
+        "chino-config": {
+          label: "editor.regulator",
+          notation: ({ addressMode, wordOrder }, tags) => modbusNotation({
+            addressMode: oneOf(addressMode, ["1-base", "0-base"]),
+            wordOrder: oneOf(wordOrder, ["low", "high"]),
+            tags
+          }),
+          usable: (device) => device,
+          describe: describeModbus
+        }
+      };
+      var TYPES = Object.keys(DEVICES);
+      var kindOf = (device) => DEVICES[device && device.type || "nx-config"] || DEVICES["nx-config"];
+      var notationOf = (device) => kindOf(device).notation(device || {});
+      var usableTags = (notation, device, tags) => {
+        const names = /* @__PURE__ */ new Set();
+        return tags.filter((row) => {
+          const [name] = attempt(() => [...notation(device, [row]).tags.keys()], []);
+          return name !== void 0 && !names.has(name) && names.add(name);
+        });
+      };
+      var notationWithTags = (device) => {
+        const { notation, usable } = kindOf(device);
+        const own = usable(device || {});
+        const tags = device && device.tags || [];
+        return attempt(() => notation(own, tags), null) || notation(own, usableTags(notation, own, Array.isArray(tags) ? tags : []));
+      };
+      var deviceLabel = (device) => t(kindOf(device).label, { station: device.station === "" ? "?" : device.station });
+      var deviceName = (device) => device.name || deviceLabel(device);
+      var describe = (item, device, { write = false } = {}) => kindOf(device).describe(item, device || {}, write);
       var unsure = (item, notation) => attempt(() => notation.parse(item.addressText).certainty === "unconfirmed", false);
-      module.exports = { notationOf, notationWithTags, plcLabel, plcName, describe, unsure, parseItem, attempt, hex };
+      module.exports = {
+        TYPES,
+        notationOf,
+        notationWithTags,
+        deviceLabel,
+        deviceName,
+        describe,
+        unsure,
+        parseItem,
+        attempt,
+        hex
+      };
     }
   });
 
@@ -1536,9 +2457,12 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { PROPERTIES, readProperty, allowed, applies } = require_properties();
       var { t, errorText } = require_texts();
-      var { readSettings } = require_settings();
+      var { truthy } = require_widgets();
+      var { readRanges } = require_options();
+      var { mixedConflict } = require_mixed();
+      var { masterIdsOf, readSettings } = require_settings();
       var { readTags } = require_tags();
-      var { notationOf, notationWithTags, parseItem, plcName } = require_model();
+      var { TYPES, attempt, deviceName, notationOf, notationWithTags, parseItem } = require_model();
       var edited = { id: null, prefix: "node-input-" };
       var open = (node, prefix) => Object.assign(edited, { id: node.id, prefix });
       var done = () => {
@@ -1551,50 +2475,95 @@ var nxlineSerialPlc = (() => {
       };
       var view = (node) => new Proxy({}, { get: (_, name) => current(node, String(name)) });
       var isVariable = (value) => typeof value === "string" && /^\s*\$\{[^}]+\}\s*$/.test(value);
-      var sameStation = (node, station) => {
+      var neighbours = (node) => {
         const line = current(node, "line");
-        let twin = null;
+        const found = [];
         RED.nodes.eachConfig((other) => {
-          const known = other.type === "nx-config" && other.id !== node.id && other.line === line && !other.d;
-          if (known && String(other.station) === String(station).trim()) twin = other;
+          if (TYPES.includes(other.type) && other.id !== node.id && other.line === line && !other.d) found.push(other);
           return true;
         });
-        return twin;
+        return found;
+      };
+      var memberOf = ({ type, station, masterIds }) => ({
+        protocol: type === "chino-config" ? "modbus" : "nx",
+        station: Number(station),
+        masterIds: [...attempt(() => masterIdsOf(masterIds), [])],
+        name: ""
+      });
+      var checkNumber = (type) => (node, station) => {
+        const own = memberOf({ type, station, masterIds: current(node, "masterIds") });
+        for (const other of neighbours(node)) {
+          const name = deviceName(other);
+          if (String(other.station) === String(station).trim()) return t("problem.sameStation", { other: name });
+          const reason = isVariable(other.station) ? "" : mixedConflict(own, memberOf(other));
+          if (reason) return t("problem.mixed", { other: name, reason });
+        }
+        return true;
+      };
+      var checkPlcNumber = checkNumber("nx-config");
+      var checkRegulatorNumber = checkNumber("chino-config");
+      var checkUnit = (count) => (node, value) => Number(value) <= Number(current(node, count)) || t("problem.unit");
+      var checkItems = (property, type) => (node, value) => {
+        if (current(node, "itemsType") === "msg") return true;
+        if (!value || value.length === 0) return t("problem.noItems");
+        const notation = notationWithTags(deviceOf(node, property) || { type });
+        value.filter((text) => !isVariable(text)).forEach((text) => parseItem(text, notation));
+        return true;
+      };
+      var checkTarget = (property) => (node, value) => {
+        if (!String(value || "").trim()) return true;
+        const device = deviceOf(node, property);
+        if (!device) return true;
+        parseItem(value, notationWithTags(device));
+        return device.access === "write" ? true : t("problem.readOnly", { plc: deviceName(device) });
+      };
+      var deviceOf = (node, property) => RED.nodes.node(current(node, property));
+      var isBroadcast = (node) => {
+        const device = deviceOf(node, "regulator");
+        return Boolean(device) && String(device.station).trim() === "0";
+      };
+      var chino = (node) => {
+        const { addressMode, wordOrder } = view(node);
+        return { type: "chino-config", addressMode, wordOrder };
       };
       var MORE = {
         "nx-config": {
-          station(node, value) {
-            const twin = sameStation(node, value);
-            return twin ? t("problem.sameStation", { other: plcName(twin) }) : true;
-          },
+          station: checkPlcNumber,
           masterIds: (_node, value) => Boolean(readSettings({ station: 255, masterIds: value }, 1)),
           writableRanges(node, writableRanges) {
             const { areas } = view(node);
             return Boolean(readSettings({ station: 255, areas: areas || [], writableRanges }, 1));
           },
-          areas: (_node, value) => Boolean(notationOf(value)),
+          areas: (_node, value) => Boolean(notationOf({ areas: value })),
           tags(node, value) {
-            readTags(value, notationOf(node.areas));
+            readTags(value, notationOf({ areas: node.areas }));
             return true;
           }
         },
-        "nx-read": {
-          items(node, value) {
-            if (current(node, "itemsType") === "msg") return true;
-            if (!value || value.length === 0) return t("problem.noItems");
-            const notation = notationWithTags(RED.nodes.node(current(node, "plc")));
-            value.filter((text) => !isVariable(text)).forEach((text) => parseItem(text, notation));
+        "chino-config": {
+          station(node, value) {
+            const all = Number(value) === 0 && !truthy(current(node, "broadcast"));
+            return all ? t("problem.broadcastOff") : checkRegulatorNumber(node, value);
+          },
+          protocol(node, value) {
+            const line = RED.nodes.node(current(node, "line"));
+            return value === "rtu" && line && String(line.dataBits) === "7" ? t("problem.dataBits") : true;
+          },
+          coilUnit: checkUnit("coilRead"),
+          discreteUnit: checkUnit("discreteRead"),
+          writableRanges: (node, value) => Boolean(readRanges(value, notationOf(chino(node)))),
+          tags(node, value) {
+            readTags(value, notationOf(chino(node)));
             return true;
           }
         },
-        "nx-write": {
-          target(node, value) {
-            if (!String(value || "").trim()) return true;
-            const plc = RED.nodes.node(current(node, "plc"));
-            if (!plc) return true;
-            parseItem(value, notationWithTags(plc));
-            return plc.access === "write" ? true : t("problem.readOnly", { plc: plcName(plc) });
-          }
+        "nx-read": { items: checkItems("plc", "nx-config") },
+        "nx-write": { target: checkTarget("plc") },
+        "chino-regulator": {
+          mode: (node, value) => value === "write" || !isBroadcast(node) || t("problem.broadcastMode"),
+          verify: (node, value) => !truthy(value) || !isBroadcast(node) || t("problem.broadcastMode"),
+          items: checkItems("regulator", "chino-config"),
+          target: checkTarget("regulator")
         }
       };
       var isEmpty = (value) => value === void 0 || value === null || value === "";
@@ -1618,96 +2587,6 @@ var nxlineSerialPlc = (() => {
         }
       );
       module.exports = { check, current, open, done, isVariable, view };
-    }
-  });
-
-  // scripts/editor/widgets.js
-  var require_widgets = __commonJS({
-    "scripts/editor/widgets.js"(exports, module) {
-      "use strict";
-      var { t } = require_texts();
-      var tabs = (id, pages) => {
-        const widget = RED.tabs.create({
-          id,
-          onchange(tab) {
-            $(`#${id}-content`).children().hide();
-            $(`#${tab.id}`).show();
-            $(`#${tab.id}`).trigger("nxline-shown");
-          }
-        });
-        pages.forEach(([page, label]) => widget.addTab({ id: page, label }));
-        return widget;
-      };
-      var keepUnknown = (field, value) => {
-        if (value === void 0 || value === null || value === "") return;
-        const known = field.find("option").filter((_, option) => option.value === String(value)).length > 0;
-        if (!known) field.append($("<option>").attr("value", value).text(value));
-        field.val(String(value));
-      };
-      var fillDefaults = (node, prefix) => {
-        for (const [name, { value }] of Object.entries(node._def.defaults)) {
-          const field = $(`#${prefix}${name}`);
-          if (field.length === 0) continue;
-          if (node[name] === void 0 && value !== "" && !Array.isArray(value)) {
-            if (field.is(":checkbox")) field.prop("checked", value);
-            else field.val(String(value));
-          }
-          if (field.is("select") && !field.prop("multiple") && !name.match(/^(line|plc)$/)) {
-            keepUnknown(field, node[name] === void 0 ? value : node[name]);
-          }
-        }
-      };
-      var offerRow = ({ value, hint = "", first = "" }) => ({
-        value,
-        label: $("<span>").text(first || value).append(
-          $("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(first ? value : hint)
-        )
-      });
-      var offersFor = (text, offers, usable) => {
-        const wanted = text.trim().toLowerCase();
-        const found = offers.filter((offer) => `${offer.value} ${offer.hint || ""} ${offer.first || ""}`.toLowerCase().includes(wanted)).slice(0, 50);
-        if (wanted === "" || found.length === 0 || !usable(text.trim())) return found;
-        const others = found.filter(({ value }) => value !== text.trim());
-        return others.length === 0 ? [] : [{ value: text.trim() }, ...others];
-      };
-      var suggest = (field, offers, usable) => {
-        field.on("keydown", ({ key }) => {
-          const before = field.val();
-          if (key === "Tab" || key === "Enter") setTimeout(() => field.val() !== before && field.trigger("change"), 0);
-        });
-        field.autoComplete({
-          minLength: 0,
-          search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
-        });
-        field.on("click", () => field.val() === "" && field.trigger("keyup"));
-      };
-      var copyable = (text) => $('<a href="#" class="nxline-copy">').css({ fontFamily: "var(--red-ui-monospace-font)", whiteSpace: "nowrap" }).attr("title", t("editor.copy")).text(text).prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>').on("click", function(event) {
-        event.preventDefault();
-        RED.clipboard.copyText(text, $(this));
-      });
-      var note = () => $('<div class="nxline-note">').css({
-        fontSize: "12px",
-        lineHeight: "16px",
-        minHeight: "16px",
-        color: "var(--red-ui-secondary-text-color)"
-      });
-      var say = (block, text, bad = false) => block.empty().text(text).css("color", bad ? "var(--red-ui-text-color-error)" : "var(--red-ui-secondary-text-color)");
-      var cell = (name, value, { width = "80px", grow = false, shows = t(`column.${name}`) } = {}) => $('<input type="text">').addClass(`nxline-${name}`).attr({ placeholder: shows, title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 }).val(value === void 0 || value === null ? "" : String(value));
-      var pick = (name, value, options) => {
-        const field = $("<select>").addClass(`nxline-${name}`).attr({ title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width: "auto", margin: 0 });
-        options.forEach(([key, label]) => field.append($("<option>").attr("value", key).text(label)));
-        keepUnknown(field, value);
-        return field;
-      };
-      var truthy = (value) => Boolean(value) && value !== "false";
-      var tick = (name, value) => {
-        const box = $('<input type="checkbox">').addClass(`nxline-${name}`).css({ width: "auto", margin: "0 4px 0 0" }).prop("checked", truthy(value));
-        const label = $("<label>").css({ width: "auto", margin: 0, display: "inline-flex", alignItems: "center", whiteSpace: "nowrap" }).attr("title", t(`tooltip.${name}`)).append(box).append(document.createTextNode(t(`column.${name}`)));
-        return { box, label };
-      };
-      var mark = (text) => $("<span>").css({ color: "var(--red-ui-secondary-text-color)", whiteSpace: "nowrap", fontSize: "12px" }).text(text);
-      var flex = (...children) => $("<div>").css({ display: "flex", gap: "4px", alignItems: "center", marginBottom: "3px" }).append(children);
-      module.exports = { tabs, fillDefaults, suggest, offersFor, copyable, note, say, cell, pick, tick, truthy, flex, mark };
     }
   });
 
@@ -1781,81 +2660,11 @@ var nxlineSerialPlc = (() => {
     }
   });
 
-  // lib/tag/csv.js
-  var require_csv = __commonJS({
-    "lib/tag/csv.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var { FIELDS } = require_tags();
-      var SEPARATORS = [",", ";", "	"];
-      var separatorOf = (text) => {
-        const line = text.replace(/"(?:[^"]|"")*"/g, "").split(/\r\n|\r|\n/, 1)[0];
-        const counts = SEPARATORS.map((separator) => line.split(separator).length);
-        return SEPARATORS[counts.indexOf(Math.max(...counts))];
-      };
-      var unquote = (cell) => cell.startsWith('"') ? cell.slice(1, -1).replaceAll('""', '"') : cell;
-      var parseCells = (text, separator) => {
-        const other = separator === "	" ? "\\t" : separator;
-        const cell = new RegExp(`("(?:[^"]|"")*"|[^"${other}\\r\\n][^${other}\\r\\n]*|)(${other}|\\r\\n|\\r|\\n|$)`, "y");
-        const rows = [[]];
-        let line = 1;
-        while (cell.lastIndex < text.length || rows.at(-1)?.length) {
-          const from = cell.lastIndex;
-          const found = cell.exec(text);
-          if (!found)
-            throw new PlcError("BAD_TAG", { name: `in line ${line}`, reason: "a quote is not closed, or text follows it" });
-          rows[rows.length - 1].push(unquote(found[1]));
-          line += (found[0].match(/\r\n|\r|\n/g) || []).length;
-          if (found[2] === "") break;
-          if (found[2] !== separator) rows.push([]);
-          if (cell.lastIndex === from) break;
-        }
-        return rows.filter((row) => row.some((value) => value.trim() !== ""));
-      };
-      var tagsFromCsv = (text) => {
-        const body = String(text).replace(/^\uFEFF/, "");
-        const separator = separatorOf(body);
-        const [head = [], ...rows] = parseCells(body, separator);
-        const columns = head.map((title) => FIELDS.find((field) => field.toLowerCase() === title.trim().toLowerCase()));
-        for (const needed of ["name", "address"]) {
-          if (!columns.includes(needed))
-            throw new PlcError("BAD_TAG", { name: "table", reason: `the column ${needed} is missing` });
-        }
-        const decimal = (value) => separator === "," ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*)$/, "$1.$2");
-        const numeric = /* @__PURE__ */ new Set(["scale", "offset", "deadband", "min", "max"]);
-        return rows.map((cells) => {
-          const row = {};
-          columns.forEach((field, index) => {
-            if (field) row[field] = numeric.has(field) ? decimal(cells[index] ?? "") : cells[index] ?? "";
-          });
-          return row;
-        });
-      };
-      var cellOf = (value) => {
-        const text = value === null || value === void 0 ? "" : String(value);
-        return /[",;\t\r\n]|^\s|\s$/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-      };
-      var tagsToCsv = (tags, { separator = "," } = {}) => {
-        const lines = [FIELDS, ...Array.from(tags, (tag) => FIELDS.map((field) => tag[field]))];
-        return `\uFEFF${lines.map((cells) => cells.map(cellOf).join(separator)).join("\r\n")}\r
-`;
-      };
-      module.exports = { tagsFromCsv, tagsToCsv };
-    }
-  });
-
   // scripts/editor/table.js
   var require_table = __commonJS({
     "scripts/editor/table.js"(exports, module) {
       "use strict";
-      var { areaMap } = require_areas();
-      var { tagsFromCsv, tagsToCsv } = require_csv();
-      var { parseExpression } = require_item();
-      var { readTags } = require_tags();
-      var { attempt, describe, hex, notationOf, unsure } = require_model();
-      var { cell, flex, mark, note, pick, say, tick, truthy } = require_widgets();
-      var { errorText, reasonOf, t } = require_texts();
-      var TYPES = ["", "bool", "uint16", "int16", "uint32", "int32", "float32", "bcd16", "bcd32", "string[8]"];
+      var { truthy } = require_widgets();
       var rowsOf = (list) => list.editableList("items").toArray().map((row) => row.data("nxline").read());
       var kept = (saved, name, value) => {
         const before = saved[name];
@@ -1871,94 +2680,24 @@ var nxlineSerialPlc = (() => {
         }
         return row;
       };
-      var tagText = (row, { steps, areas }) => {
-        const notation = notationOf(areas);
-        const tag = [...readTags([row], notation).values()][0];
-        const item = parseExpression(tag.address, notation, { tag });
-        return describe(item, { steps }) + (unsure(item, notation) ? ` · ${t("editor.unconfirmed")}` : "");
-      };
-      var judgeTag = (row, block, context) => {
-        if (!row.name && !row.address) return say(block, t("editor.tagHint"));
-        try {
-          return say(block, tagText(row, context()));
-        } catch (error) {
-          return say(block, reasonOf(error), true);
-        }
-      };
-      var typeField = (value) => {
-        const known = TYPES.map((type) => [type, type || t("editor.byAddress")]);
-        return pick("type", value, known);
-      };
-      var tagFields = (data) => {
-        const writable = tick("writable", data.writable);
-        const order = [
-          ["", t("editor.lowFirst")],
-          ["high", t("editor.highFirst")]
-        ];
-        return {
-          name: cell("tagName", data.name, { width: "24%" }),
-          address: cell("address", data.address, { width: "22%" }),
-          type: typeField(data.type),
-          label: cell("tagLabel", data.label, { grow: true, width: "20%" }),
-          unit: cell("unit", data.unit, { width: "64px" }),
-          scale: cell("scale", data.scale, { width: "58px", shows: "1" }),
-          offset: cell("offset", data.offset, { width: "58px", shows: "0" }),
-          deadband: cell("deadband", data.deadband, { width: "52px", shows: "0" }),
-          wordOrder: pick("wordOrder", data.wordOrder === "low" ? "" : data.wordOrder, order),
-          min: cell("min", data.min, { width: "52px", shows: "–" }),
-          max: cell("max", data.max, { width: "52px", shows: "–" }),
-          writable
-        };
-      };
       var readFields = (fields, saved) => {
         const content = (field) => field.box ? field.box.prop("checked") : String(field.val() ?? "").trim();
         const cells = Object.fromEntries(Object.entries(fields).map(([name, field]) => [name, content(field)]));
-        if (cells.wordOrder === "" && saved.wordOrder === "low") cells.wordOrder = "low";
         return merged(saved, cells);
       };
-      var addTag = (container, data, context) => {
-        const fields = tagFields(data);
-        const message = note();
-        const read = () => readFields(fields, data);
-        const judge = () => judgeTag(read(), message, context);
-        container.append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit)).append(
-          flex(
-            ...[mark("×"), fields.scale, mark("+"), fields.offset, mark(t("column.deadband")), fields.deadband],
-            ...[fields.wordOrder, mark(t("column.min")), fields.min, mark(t("column.max")), fields.max],
-            fields.writable.label
-          )
-        ).append(message).on("input change", judge);
-        container.data("nxline", { read, judge });
-        judge();
-      };
-      var tagTable = (list, tags, context) => {
-        list.editableList({
-          header: $("<div>").css({ padding: "2px 6px", color: "var(--red-ui-secondary-text-color)" }).text(t("editor.tagHeader")),
-          addItem: (container, _index, data) => addTag(container, data, context),
-          addButton: t("editor.addTag"),
-          removable: true,
-          sortable: true,
-          scrollOnAdd: true,
-          height: 300
-        });
-        (tags || []).forEach((tag) => list.editableList("addItem", tag));
-      };
-      var importTags = (list, text, areas) => {
-        const rows = tagsFromCsv(text);
-        readTags(rows, notationOf(areas));
-        const names = new Set(rows.map((row) => row.name.trim()));
-        list.editableList("items").toArray().filter((row) => names.has(row.data("nxline").read().name)).forEach((row) => list.editableList("removeItem", row.data("data")));
-        rows.forEach((row) => list.editableList("addItem", merged({}, row)));
-        return rows.length;
-      };
-      var download = (name, text) => {
-        const url = URL.createObjectURL(new Blob([text], { type: "text/csv;charset=utf-8" }));
-        const link = $("<a>").attr({ href: url, download: name }).appendTo("body");
-        link[0].click();
-        link.remove();
-        URL.revokeObjectURL(url);
-      };
-      var exportTags = (list, name) => download(`${name || "tags"}.csv`, tagsToCsv(rowsOf(list)));
+      module.exports = { merged, readFields, rowsOf };
+    }
+  });
+
+  // scripts/editor/areas.js
+  var require_areas2 = __commonJS({
+    "scripts/editor/areas.js"(exports, module) {
+      "use strict";
+      var { areaMap } = require_areas();
+      var { attempt, hex } = require_model();
+      var { readFields, rowsOf } = require_table();
+      var { cell, flex, note, pick, say, tick } = require_widgets();
+      var { errorText, t } = require_texts();
       var areaFields = (data) => ({
         area: cell("area", data.area, { width: "60px" }),
         base: cell("base", data.base, { width: "80px" }),
@@ -2033,42 +2772,231 @@ var nxlineSerialPlc = (() => {
         });
         (areas || []).forEach((row) => list.editableList("addItem", row));
       };
-      module.exports = { tagTable, areaTable, areaFault, merged, rowsOf, importTags, exportTags };
+      module.exports = { areaFault, areaTable };
     }
   });
 
-  // scripts/editor/plc.js
-  var require_plc = __commonJS({
-    "scripts/editor/plc.js"(exports, module) {
+  // lib/tag/csv.js
+  var require_csv = __commonJS({
+    "lib/tag/csv.js"(exports, module) {
       "use strict";
-      var { areaMap } = require_areas();
+      var { PlcError } = require_error();
+      var { FIELDS } = require_tags();
+      var SEPARATORS = [",", ";", "	"];
+      var separatorOf = (text) => {
+        const line = text.replace(/"(?:[^"]|"")*"/g, "").split(/\r\n|\r|\n/, 1)[0];
+        const counts = SEPARATORS.map((separator) => line.split(separator).length);
+        return SEPARATORS[counts.indexOf(Math.max(...counts))];
+      };
+      var unquote = (cell) => cell.startsWith('"') ? cell.slice(1, -1).replaceAll('""', '"') : cell;
+      var parseCells = (text, separator) => {
+        const other = separator === "	" ? "\\t" : separator;
+        const cell = new RegExp(`("(?:[^"]|"")*"|[^"${other}\\r\\n][^${other}\\r\\n]*|)(${other}|\\r\\n|\\r|\\n|$)`, "y");
+        const rows = [[]];
+        let line = 1;
+        while (cell.lastIndex < text.length || rows.at(-1)?.length) {
+          const from = cell.lastIndex;
+          const found = cell.exec(text);
+          if (!found)
+            throw new PlcError("BAD_TAG", { name: `in line ${line}`, reason: "a quote is not closed, or text follows it" });
+          rows[rows.length - 1].push(unquote(found[1]));
+          line += (found[0].match(/\r\n|\r|\n/g) || []).length;
+          if (found[2] === "") break;
+          if (found[2] !== separator) rows.push([]);
+          if (cell.lastIndex === from) break;
+        }
+        return rows.filter((row) => row.some((value) => value.trim() !== ""));
+      };
+      var tagsFromCsv = (text) => {
+        const body = String(text).replace(/^\uFEFF/, "");
+        const separator = separatorOf(body);
+        const [head = [], ...rows] = parseCells(body, separator);
+        const columns = head.map((title) => FIELDS.find((field) => field.toLowerCase() === title.trim().toLowerCase()));
+        for (const needed of ["name", "address"]) {
+          if (!columns.includes(needed))
+            throw new PlcError("BAD_TAG", { name: "table", reason: `the column ${needed} is missing` });
+        }
+        const decimal = (value) => separator === "," ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*)$/, "$1.$2");
+        const numeric = /* @__PURE__ */ new Set(["scale", "offset", "deadband", "min", "max"]);
+        return rows.map((cells) => {
+          const row = {};
+          columns.forEach((field, index) => {
+            if (field) row[field] = numeric.has(field) ? decimal(cells[index] ?? "") : cells[index] ?? "";
+          });
+          return row;
+        });
+      };
+      var csvWarnings = (rows, notation) => rows.flatMap((row) => {
+        const { name = "", address = "" } = row ?? {};
+        const texts = notation.doubts?.(row ?? {}) ?? [];
+        return texts.map((text) => ({ name: String(name), address: String(address), text }));
+      });
+      var cellOf = (value) => {
+        const text = value === null || value === void 0 ? "" : String(value);
+        return /[",;\t\r\n]|^\s|\s$/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+      };
+      var tagsToCsv = (tags, { separator = "," } = {}) => {
+        const lines = [FIELDS, ...Array.from(tags, (tag) => FIELDS.map((field) => tag[field]))];
+        return `\uFEFF${lines.map((cells) => cells.map(cellOf).join(separator)).join("\r\n")}\r
+`;
+      };
+      module.exports = { csvWarnings, tagsFromCsv, tagsToCsv };
+    }
+  });
+
+  // scripts/editor/tags.js
+  var require_tags2 = __commonJS({
+    "scripts/editor/tags.js"(exports, module) {
+      "use strict";
+      var { csvWarnings, tagsFromCsv, tagsToCsv } = require_csv();
+      var { parseExpression } = require_item();
+      var { readTags } = require_tags();
+      var { describe, notationOf, unsure } = require_model();
+      var { merged, readFields, rowsOf } = require_table();
+      var { cell, flex, mark, note, pick, say, tick } = require_widgets();
+      var { reasonOf, t } = require_texts();
+      var TYPES = ["", "bool", "uint16", "int16", "uint32", "int32", "float32", "bcd16", "bcd32", "string[8]"];
+      var MOST_DOUBTS = 5;
+      var tagText = (row, device) => {
+        const notation = notationOf(device);
+        const tag = [...readTags([row], notation).values()][0];
+        const item = parseExpression(tag.address, notation, { tag });
+        return describe(item, device) + (unsure(item, notation) ? ` · ${t("editor.unconfirmed")}` : "");
+      };
+      var judgeTag = (row, block, device) => {
+        const modbus = device.type === "chino-config";
+        if (!row.name && !row.address) return say(block, t(modbus ? "editor.modbusTagHint" : "editor.tagHint"));
+        if (modbus && !row.address) return say(block, t("editor.fillIn"), true);
+        try {
+          return say(block, tagText(row, device));
+        } catch (error) {
+          return say(block, reasonOf(error), true);
+        }
+      };
+      var typeField = (value) => {
+        const known = TYPES.map((type) => [type, type || t("editor.byAddress")]);
+        return pick("type", value, known);
+      };
+      var orders = (saved, { type }) => {
+        const known = [
+          ["low", t("editor.lowFirst")],
+          ["high", t("editor.highFirst")]
+        ];
+        if (type === "chino-config") return [["", t("editor.deviceOrder")], ...known];
+        return saved === "low" ? known : [["", t("editor.lowFirst")], known[1]];
+      };
+      var tagFields = (data, device) => {
+        const writable = tick("writable", data.writable);
+        const hint = t(device.type === "chino-config" ? "editor.modbusAddress" : "tooltip.address");
+        return {
+          name: cell("tagName", data.name, { width: "24%" }),
+          address: cell("address", data.address, { width: "22%", hint }),
+          type: typeField(data.type),
+          label: cell("tagLabel", data.label, { grow: true, width: "20%" }),
+          unit: cell("unit", data.unit, { width: "64px" }),
+          scale: cell("scale", data.scale, { width: "58px", shows: "1" }),
+          offset: cell("offset", data.offset, { width: "58px", shows: "0" }),
+          deadband: cell("deadband", data.deadband, { width: "52px", shows: "0" }),
+          wordOrder: pick("wordOrder", data.wordOrder, orders(data.wordOrder, device)),
+          min: cell("min", data.min, { width: "52px", shows: "–" }),
+          max: cell("max", data.max, { width: "52px", shows: "–" }),
+          writable
+        };
+      };
+      var addTag = (container, data, device) => {
+        const fields = tagFields(data, device());
+        const message = note();
+        const read = () => readFields(fields, data);
+        const judge = () => judgeTag(read(), message, device());
+        container.append(flex(fields.name, fields.address, fields.type, fields.label, fields.unit)).append(
+          flex(
+            ...[mark("×"), fields.scale, mark("+"), fields.offset, mark(t("column.deadband")), fields.deadband],
+            ...[fields.wordOrder, mark(t("column.min")), fields.min, mark(t("column.max")), fields.max],
+            fields.writable.label
+          )
+        ).append(message).on("input change", judge);
+        container.data("nxline", { read, judge });
+        judge();
+      };
+      var tagTable = (list, tags, device) => {
+        list.editableList({
+          header: $("<div>").css({ padding: "2px 6px", color: "var(--red-ui-secondary-text-color)" }).text(t("editor.tagHeader")),
+          addItem: (container, _index, data) => addTag(container, data, device),
+          addButton: t("editor.addTag"),
+          removable: true,
+          sortable: true,
+          scrollOnAdd: true,
+          height: 300
+        });
+        (tags || []).forEach((tag) => list.editableList("addItem", tag));
+      };
+      var TEMPLATE = [
+        { name: "manual_output", label: "template.manualOutput", unit: "%" },
+        { name: "gradient", label: "template.gradient", unit: "%" },
+        { name: "elevation", label: "template.elevation", unit: "%" },
+        { name: "load_voltage", label: "template.loadVoltage", unit: "V" },
+        { name: "load_current", label: "template.loadCurrent", unit: "A" },
+        { name: "load_power", label: "template.loadPower", unit: "W" },
+        { name: "load_resistance", label: "template.loadResistance", unit: "Ω" },
+        { name: "alarm", label: "template.alarm" }
+      ];
+      var missingRows = (present) => {
+        const names = new Set(present.map(({ name }) => name));
+        return TEMPLATE.filter(({ name }) => !names.has(name)).map((row) => ({ ...row, label: t(row.label), address: "" }));
+      };
+      var addTemplate = (list) => missingRows(rowsOf(list)).forEach((row) => list.editableList("addItem", row));
+      var doubtOf = (rows, notation) => {
+        const found = csvWarnings(rows, notation).map(({ name, text }) => `${name}: ${text}`);
+        if (found.length === 0) return "";
+        const first = found.slice(0, MOST_DOUBTS).join(" · ");
+        return t("editor.doubt", { list: found.length > MOST_DOUBTS ? `${first} …` : first });
+      };
+      var importTags = (list, text, device) => {
+        const rows = tagsFromCsv(text);
+        const notation = notationOf(device);
+        readTags(rows, notation);
+        const names = new Set(rows.map((row) => row.name.trim()));
+        list.editableList("items").toArray().filter((row) => names.has(row.data("nxline").read().name)).forEach((row) => list.editableList("removeItem", row.data("data")));
+        rows.forEach((row) => list.editableList("addItem", merged({}, row)));
+        return { count: rows.length, doubt: doubtOf(rows, notation) };
+      };
+      var download = (name, text) => {
+        const url = URL.createObjectURL(new Blob([text], { type: "text/csv;charset=utf-8" }));
+        const link = $("<a>").attr({ href: url, download: name }).appendTo("body");
+        link[0].click();
+        link.remove();
+        URL.revokeObjectURL(url);
+      };
+      var exportTags = (list, name) => download(`${name || "tags"}.csv`, tagsToCsv(rowsOf(list)));
+      module.exports = { addTemplate, doubtOf, exportTags, importTags, missingRows, tagTable };
+    }
+  });
+
+  // scripts/editor/device.js
+  var require_device = __commonJS({
+    "scripts/editor/device.js"(exports, module) {
+      "use strict";
       var { done, open } = require_check();
-      var { attempt, plcLabel } = require_model();
-      var { areaTable, exportTags, importTags, rowsOf, tagTable } = require_table();
+      var { exportTags, importTags, tagTable } = require_tags2();
+      var { rowsOf } = require_table();
       var { fillDefaults, tabs } = require_widgets();
       var { errorText, t } = require_texts();
-      var dialogHeight = 0;
       var PREFIX = "node-config-input-";
-      var value = (name) => $(`#${PREFIX}${name}`).val();
-      var areaRows = () => rowsOf($("#nxline-nx-area-list")).filter((row) => row.area);
-      var tagRows = () => rowsOf($("#nxline-nx-tag-list")).filter((row) => row.name || row.address);
-      var context = () => ({ steps: value("steps"), areas: attempt(areaRows, []) });
-      var judgeAll = () => $("#nxline-nx-tag-list").editableList("items").toArray().forEach((row) => row.data("nxline").judge());
-      var noteAreas = () => {
-        const map = attempt(() => areaMap(areaRows()), null);
-        if (!map) return;
-        const names = (sure) => map.list.filter((row) => row.certainty === "unconfirmed" === sure).map((row) => row.area);
-        $("#nxline-nx-area-note").text(
-          t("editor.areaNote", { sure: names(false).join(", "), unsure: names(true).join(", ") || "–" })
-        );
-      };
-      var wireCsv = (node) => {
-        $("#nxline-nx-export").on("click", () => exportTags($("#nxline-nx-tag-list"), value("name") || node.id));
-        $("#nxline-nx-import").on("click", () => $("#nxline-nx-file").val("").trigger("click"));
-        $("#nxline-nx-file").on("change", async function() {
+      var field = (name) => $(`#${PREFIX}${name}`);
+      var value = (name) => field(name).val();
+      var fieldValue = (name) => field(name).is(":checkbox") ? field(name).prop("checked") : value(name);
+      var tagRows = (list) => rowsOf(list).filter((row) => row.name || row.address);
+      var wireCsv = ({ part, list, device }, node) => {
+        part("export").on("click", () => {
+          exportTags(list, value("name") || node.id);
+          if (device().type === "chino-config") RED.notify(t("editor.exported"), "warning");
+        });
+        part("import").on("click", () => part("file").val("").trigger("click"));
+        part("file").on("change", async function() {
           try {
-            const count = importTags($("#nxline-nx-tag-list"), await this.files[0].text(), areaRows());
+            const { count, doubt } = importTags(list, await this.files[0].text(), device());
             RED.notify(t("editor.imported", { number: count }), "success");
+            if (doubt) RED.notify($("<span>").text(doubt).html(), { type: "warning", timeout: 15e3 });
           } catch (error) {
             RED.notify($("<span>").text(errorText(error)).html(), "error");
           }
@@ -2080,111 +3008,261 @@ var nxlineSerialPlc = (() => {
         const names = Object.keys(line._def.defaults);
         return { id, ...Object.fromEntries(names.map((name) => [name, line[name]])) };
       };
-      var plcProperties = (node) => {
-        const fields = ["name", "line", "station", "steps", "timeout", "masterIds"];
-        return {
-          id: node.id,
-          ...Object.fromEntries(fields.map((name) => [name, value(name)])),
-          areas: areaRows(),
-          tags: tagRows()
-        };
-      };
-      var showResult = (text, colour) => $("#nxline-nx-test-result").show().text(text).css({ borderLeft: `4px solid var(${colour})` });
       var failure = ({ reached, error }) => {
         const { deployFirst, value: path } = error.details || {};
         if (deployFirst) return t("test.deployFirst", { path });
-        const text = errorText(error).replace(/^(?:the|station)\b/, (word) => word[0].toUpperCase() + word.slice(1));
+        const text = errorText(error).replace(/^(?:the|station)\b/, capital);
         return reached ? t("test.reached", { text: errorText(error) }) : t("test.failed", { text });
       };
-      var sentence = (answer) => answer.ok ? [t("test.ok", answer), "--red-ui-text-color-success"] : [failure(answer), "--red-ui-text-color-error"];
+      var capital = (text) => text[0].toUpperCase() + text.slice(1);
+      var sentences = (answer) => {
+        const { cause } = answer;
+        const likely = cause ? [t("test.cause", { text: `${capital(cause.text)}. ${cause.remedy}` })] : [];
+        return [answer.ok ? t("test.ok", answer) : failure(answer), ...likely];
+      };
+      var showAnswer = (block, lines, colour) => block.show().empty().append(lines.map((line) => $("<div>").text(line))).css({ borderLeft: `4px solid var(${colour})` });
       var httpError = (xhr) => {
         const error = xhr.responseJSON && xhr.responseJSON.error || null;
         if (error) return { ok: false, error };
         const message = t(xhr.status === 401 || xhr.status === 403 ? "test.denied" : "test.unreachable");
         return { ok: false, error: { message } };
       };
-      var runTest = (node) => {
-        const button = $("#nxline-nx-test").prop("disabled", true);
-        showResult(t("test.running"), "--red-ui-secondary-text-color");
+      var runTest = ({ part, list, device, url }, node) => {
+        const button = part("test").prop("disabled", true);
+        const result = part("test-result");
+        showAnswer(result, [t("test.running")], "--red-ui-secondary-text-color");
         const finish = (answer) => {
           button.prop("disabled", false);
-          showResult(...sentence(answer));
+          showAnswer(result, sentences(answer), answer.ok ? "--red-ui-text-color-success" : "--red-ui-text-color-error");
         };
-        const data = JSON.stringify({ plc: plcProperties(node), line: lineProperties(value("line")) });
-        $.ajax({ url: "nx-config/test", type: "POST", contentType: "application/json", data }).then(
-          finish,
-          (xhr) => finish(httpError(xhr))
-        );
-      };
-      var editPlc = (node) => {
-        open(node, PREFIX);
-        fillDefaults(node, PREFIX);
-        areaTable($("#nxline-nx-area-list"), node.areas, () => noteAreas());
-        tagTable($("#nxline-nx-tag-list"), node.tags, context);
-        noteAreas();
-        wireCsv(node);
-        $("#nxline-nx-test").on("click", () => runTest(node));
-        $(`#${PREFIX}steps`).on("change", judgeAll);
-        $(`#${PREFIX}line`).on("change", () => $(`#${PREFIX}station`).trigger("change"));
-        $(`#${PREFIX}access`).on("change", function() {
-          $(".nxline-writing").toggle($(this).val() !== "read");
-          $(".nxline-reading").toggle($(this).val() === "read");
-        }).trigger("change");
-        $("#nxline-nx-tags").on("nxline-shown", () => {
-          fitTags();
-          judgeAll();
+        const data = JSON.stringify({
+          plc: { id: node.id, ...device(), tags: tagRows(list) },
+          line: lineProperties(value("line"))
         });
-        tabs("nxline-nx-tabs", [
-          ["nxline-nx-plc", t("tab.plc")],
-          ["nxline-nx-tags", t("tab.tags")],
-          ["nxline-nx-writing", t("tab.writing")],
-          ["nxline-nx-details", t("tab.details")]
-        ]);
+        $.ajax({ url, type: "POST", contentType: "application/json", data }).then(finish, (xhr) => finish(httpError(xhr)));
       };
-      var savePlc = (node) => {
-        node.areas = areaRows();
-        node.tags = tagRows();
-        done();
+      var TABS = {
+        plc: "tab.plc",
+        regulator: "tab.regulator",
+        tags: "tab.tags",
+        writing: "tab.writing",
+        details: "tab.details"
       };
-      var fitTags = () => {
-        const list = $("#nxline-nx-tag-list");
+      var dialogHeight = 0;
+      var fitTags = (list) => {
         if (dialogHeight > 0 && list.is(":visible")) list.editableList("height", Math.max(200, dialogHeight - 150));
       };
-      var resizePlc = (size) => {
-        dialogHeight = size.height;
-        fitTags();
+      var judgeRows = (list) => list.editableList("items").toArray().forEach((row) => row.data("nxline").judge());
+      var deviceDialog = (name, { type, pages, fields, more = () => ({}), judged }) => {
+        const part = (id) => $(`#nxline-${name}-${id}`);
+        const device = () => ({ type, ...Object.fromEntries(fields.map((each) => [each, fieldValue(each)])), ...more() });
+        const judge = () => judgeRows(part("tag-list"));
+        return {
+          /** oneditprepare; what `before` makes is there when the tags are judged. */
+          edit(node, before = () => {
+          }) {
+            open(node, PREFIX);
+            fillDefaults(node, PREFIX);
+            before();
+            const list = part("tag-list");
+            tagTable(list, node.tags, device);
+            const own = { part, list, device, url: `${type}/test` };
+            wireCsv(own, node);
+            part("test").on("click", () => runTest(own, node));
+            judged.forEach((each) => field(each).on("change", judge));
+            field("line").on("change", () => field("station").trigger("change"));
+            field("access").on("change", function() {
+              $(".nxline-writing").toggle($(this).val() !== "read");
+              $(".nxline-reading").toggle($(this).val() === "read");
+            }).trigger("change");
+            part("tags").on("nxline-shown", () => {
+              fitTags(list);
+              judge();
+            });
+            tabs(
+              `nxline-${name}-tabs`,
+              pages.map((page) => [`nxline-${name}-${page}`, t(TABS[page])])
+            );
+          },
+          /** oneditsave */
+          save(node) {
+            Object.assign(node, more(), { tags: tagRows(part("tag-list")) });
+            done();
+          },
+          /** oneditresize */
+          resize(size) {
+            dialogHeight = size.height;
+            fitTags(part("tag-list"));
+          }
+        };
       };
-      module.exports = { editPlc, savePlc, resizePlc, plcLabel };
+      module.exports = { deviceDialog, field, fieldValue, value };
     }
   });
 
-  // scripts/editor/flow.js
-  var require_flow = __commonJS({
-    "scripts/editor/flow.js"(exports, module) {
+  // scripts/editor/plc.js
+  var require_plc = __commonJS({
+    "scripts/editor/plc.js"(exports, module) {
       "use strict";
-      var { done, isVariable, open } = require_check();
-      var { attempt, describe, notationWithTags, parseItem, plcName, unsure } = require_model();
-      var { copyable, fillDefaults, flex, note, say, suggest } = require_widgets();
-      var { errorText, t } = require_texts();
+      var { areaMap } = require_areas();
+      var { areaTable } = require_areas2();
+      var { deviceDialog } = require_device();
+      var { attempt, deviceLabel } = require_model();
+      var { rowsOf } = require_table();
+      var { t } = require_texts();
+      var areaRows = () => rowsOf($("#nxline-nx-area-list")).filter((row) => row.area);
+      var dialog = deviceDialog("nx", {
+        type: "nx-config",
+        pages: ["plc", "tags", "writing", "details"],
+        fields: ["name", "line", "station", "steps", "timeout", "masterIds"],
+        more: () => ({ areas: areaRows() }),
+        judged: ["steps"]
+      });
+      var noteAreas = () => {
+        const map = attempt(() => areaMap(areaRows()), null);
+        if (!map) return;
+        const names = (sure) => map.list.filter((row) => row.certainty === "unconfirmed" === sure).map((row) => row.area);
+        $("#nxline-nx-area-note").text(
+          t("editor.areaNote", { sure: names(false).join(", "), unsure: names(true).join(", ") || "–" })
+        );
+      };
+      var editPlc = (node) => dialog.edit(node, () => {
+        areaTable($("#nxline-nx-area-list"), node.areas, noteAreas);
+        noteAreas();
+      });
+      var plcLabel = (node) => deviceLabel({ type: "nx-config", station: node.station });
+      module.exports = { editPlc, savePlc: dialog.save, resizePlc: dialog.resize, plcLabel };
+    }
+  });
+
+  // scripts/editor/regulator.js
+  var require_regulator = __commonJS({
+    "scripts/editor/regulator.js"(exports, module) {
+      "use strict";
+      var { deviceDialog, field } = require_device();
+      var { deviceLabel } = require_model();
+      var { addTemplate } = require_tags2();
+      var FIELDS = [
+        ...[
+          "name",
+          "line",
+          "station",
+          "protocol",
+          "timeout",
+          "sendWait",
+          "addressMode",
+          "wordOrder",
+          "broadcast",
+          "turnaround"
+        ],
+        ...["coilRead", "coilUnit", "coilFunction", "coilWrite", "discreteRead", "discreteUnit", "inputRead"],
+        ...["holdingRead", "holdingFunction", "holdingWrite"]
+      ];
+      var dialog = deviceDialog("chino", {
+        type: "chino-config",
+        pages: ["regulator", "tags", "writing", "details"],
+        fields: FIELDS,
+        judged: ["addressMode", "wordOrder"]
+      });
+      var editRegulatorConfig = (node) => {
+        dialog.edit(node);
+        $("#nxline-chino-template").on("click", () => addTemplate($("#nxline-chino-tag-list")));
+        field("broadcast").on("change", () => field("station").trigger("change"));
+        field("line").on("change", () => field("protocol").trigger("change"));
+      };
+      var regulatorLabel = (node) => deviceLabel({ type: "chino-config", station: node.station });
+      module.exports = {
+        editRegulatorConfig,
+        saveRegulatorConfig: dialog.save,
+        resizeRegulatorConfig: dialog.resize,
+        regulatorLabel
+      };
+    }
+  });
+
+  // scripts/editor/form.js
+  var require_form = __commonJS({
+    "scripts/editor/form.js"(exports, module) {
+      "use strict";
+      var { open } = require_check();
+      var { attempt, notationWithTags, parseItem } = require_model();
+      var { fillDefaults } = require_widgets();
       var PREFIX = "node-input-";
-      var value = (name) => $(`#${PREFIX}${name}`).val();
-      var plcOf = () => RED.nodes.node(value("plc"));
-      var tagOffers = () => [...notationWithTags(plcOf()).tags.values()].map((tag) => ({
+      var field = (name) => $(`#${PREFIX}${name}`);
+      var value = (name) => field(name).val();
+      var DEVICES = {
+        "nx-read": { property: "plc", of: "nx-config" },
+        "nx-write": { property: "plc", of: "nx-config" },
+        "chino-regulator": { property: "regulator", of: "chino-config" }
+      };
+      var form = DEVICES["nx-read"];
+      var openForm = (type, node) => {
+        form = DEVICES[type];
+        open(node, PREFIX);
+        fillDefaults(node, PREFIX);
+      };
+      var deviceProperty = () => form.property;
+      var deviceOf = () => RED.nodes.node(value(form.property));
+      var device = () => deviceOf() || { type: form.of };
+      var notation = () => notationWithTags(device());
+      var isModbus = () => form.of === "chino-config";
+      var tagOffers = () => [...notation().tags.values()].map((tag) => ({
         value: tag.name,
         hint: [tag.address, tag.label, tag.unit].filter(Boolean).join(" · ")
       }));
-      var isItem = (text) => attempt(() => Boolean(parseItem(text, notationWithTags(plcOf()))), false);
+      var isItem = (text) => attempt(() => Boolean(parseItem(text, notation())), false);
+      var reads = () => form.of !== "chino-config" || value("mode") !== "write";
+      var writes = () => form.of !== "chino-config" || value("mode") !== "read";
+      var showsList = () => reads() && value("itemsType") === "list";
+      module.exports = {
+        PREFIX,
+        device,
+        deviceOf,
+        deviceProperty,
+        field,
+        isItem,
+        isModbus,
+        notation,
+        openForm,
+        reads,
+        showsList,
+        tagOffers,
+        value,
+        writes
+      };
+    }
+  });
+
+  // scripts/editor/reading.js
+  var require_reading = __commonJS({
+    "scripts/editor/reading.js"(exports, module) {
+      "use strict";
+      var { isVariable } = require_check();
+      var {
+        device,
+        deviceOf,
+        deviceProperty,
+        field,
+        isItem,
+        isModbus,
+        notation,
+        showsList,
+        tagOffers,
+        value
+      } = require_form();
+      var { attempt, describe, deviceName, parseItem, unsure } = require_model();
+      var { copyable, flex, note, say, suggest } = require_widgets();
+      var { errorText, t } = require_texts();
       var itemTexts = () => $("#nxline-read-items").editableList("items").toArray().map((row) => row.data("nxline").read()).filter((text) => text !== "");
       var verdictOf = (text) => {
         if (!text) return { says: t("editor.itemHint") };
         if (isVariable(text)) return { says: t("editor.variable") };
-        const plc = plcOf();
-        const notation = notationWithTags(plc);
+        const known = notation();
         try {
-          const item = parseItem(text, notation);
-          const sure = unsure(item, notation) ? ` · ${t("editor.unconfirmed")}` : "";
+          const item = parseItem(text, known);
+          const sure = unsure(item, known) ? ` · ${t("editor.unconfirmed")}` : "";
           const key = value("format") === "object" ? `msg.payload.${item.name}` : item.name;
-          return { says: `${describe(item, plc || {})}${sure} · `, key };
+          return { says: `${describe(item, device())}${sure} · `, key };
         } catch (error) {
           return { says: errorText(error), bad: true };
         }
@@ -2197,13 +3275,16 @@ var nxlineSerialPlc = (() => {
         if (verdict.key) block.append(copyable(verdict.key));
       };
       var addItem = (container, data) => {
-        const field = $('<input type="text" class="nxline-item">').css({ flexGrow: 1, margin: 0 }).attr({ placeholder: t("editor.itemExample"), "aria-label": t("editor.item") }).val(typeof data === "string" ? data : data.text || "");
+        const input = $('<input type="text" class="nxline-item">').css({ flexGrow: 1, margin: 0 }).attr({
+          placeholder: t(isModbus() ? "editor.modbusAddress" : "editor.itemExample"),
+          "aria-label": t("editor.item")
+        }).val(typeof data === "string" ? data : data.text || "");
         const message = note();
-        const read = () => String(field.val()).trim();
+        const read = () => String(input.val()).trim();
         const judge = () => judgeItem(read(), message);
-        container.append(flex(field)).append(message);
-        suggest(field, tagOffers, isItem);
-        field.on("input change", () => {
+        container.append(flex(input)).append(message);
+        suggest(input, tagOffers, isItem);
+        input.on("input change", () => {
           judge();
           showExample();
         });
@@ -2223,32 +3304,30 @@ var nxlineSerialPlc = (() => {
       };
       var singles = (item) => item.range && value("ranges") === "values" ? item.elements.map(({ name }) => ({ ...item, name })) : [item];
       var EXAMPLES = {
-        object: (rows, device) => ({ topic: device, payload: Object.fromEntries(rows) }),
+        object: (rows, topic) => ({ topic, payload: Object.fromEntries(rows) }),
         message: ([[name, one]]) => ({ topic: name, payload: one }),
         envelope: ([[name, one]]) => ({
           topic: name,
           payload: { value: one, quality: "good", timestamp: 17672256e5, unit: "" }
         }),
-        list: (rows, device) => ({
-          topic: device,
+        list: (rows, topic) => ({
+          topic,
           payload: rows.map(([name, one]) => ({ name, value: one, quality: "good", timestamp: 17672256e5, unit: "" }))
         })
       };
       var showExample = () => {
-        const notation = notationWithTags(plcOf());
-        const items = itemTexts().flatMap((text2) => attempt(() => singles(parseItem(text2, notation)), []));
+        const known = notation();
+        const items = itemTexts().flatMap((text2) => attempt(() => singles(parseItem(text2, known)), []));
         const rows = items.slice(0, 3).map((item, index) => [item.name, sampleOf(item, index)]);
         const shape = EXAMPLES[value("format")];
         const block = $("#nxline-read-example");
-        if (rows.length === 0 || !shape || value("itemsType") !== "list") return block.parent().hide();
-        const plc = plcOf();
-        const text = JSON.stringify(shape(rows, plc ? plcName(plc) : "PLC"));
+        if (rows.length === 0 || !shape || !showsList()) return block.parent().hide();
+        const named = deviceOf();
+        const text = JSON.stringify(shape(rows, named ? deviceName(named) : "PLC"));
         block.text(items.length > 3 ? `${text} …` : text);
         return block.parent().show();
       };
-      var editRead = (node) => {
-        open(node, PREFIX);
-        fillDefaults(node, PREFIX);
+      var prepareReading = (node) => {
         const list = $("#nxline-read-items").editableList({
           addItem: (container, _index, data) => addItem(container, data),
           removeItem: () => setTimeout(showExample, 0),
@@ -2260,16 +3339,12 @@ var nxlineSerialPlc = (() => {
         (node.items || []).forEach((text) => list.editableList("addItem", { text }));
         if (!node.items || node.items.length === 0) list.editableList("addItem", { text: "" });
         setTimeout(() => list.closest(".red-ui-editableList-container").scrollTop(0), 0);
-        $(`#${PREFIX}itemsType`).on("change", function() {
-          $(".nxline-list").toggle($(this).val() === "list");
+        field("itemsType").on("change", () => {
+          $(".nxline-list").toggle(showsList());
           showExample();
         }).trigger("change");
-        ["plc", "format", "ranges", "booleans"].forEach((name) => $(`#${PREFIX}${name}`).on("change", judgeAll));
+        [deviceProperty(), "format", "ranges", "booleans"].forEach((name) => field(name).on("change", judgeAll));
         judgeAll();
-      };
-      var saveRead = (node) => {
-        node.items = itemTexts();
-        done();
       };
       var resizeRead = (size) => {
         const others = $("#dialog-form > div:visible").not(".nxline-list").toArray();
@@ -2281,40 +3356,108 @@ var nxlineSerialPlc = (() => {
         const items = node.items || [];
         return items.length > 2 ? `${items.slice(0, 2).join(", ")} …` : items.join(", ");
       };
-      var judgeTarget = () => {
-        const text = String(value("target") || "").trim();
-        const plc = plcOf();
-        const block = $("#nxline-write-note");
-        const readOnly = plc && plc.access !== "write";
-        if (readOnly && !text) return say(block, t("problem.readOnly", { plc: plcName(plc) }), true);
-        if (!text) return say(block, t("editor.noTarget"));
-        if (isVariable(text)) return say(block, t("editor.variable"));
-        const notation = notationWithTags(plc);
+      module.exports = { itemTexts, prepareReading, readLabel, resizeRead };
+    }
+  });
+
+  // scripts/editor/writing.js
+  var require_writing = __commonJS({
+    "scripts/editor/writing.js"(exports, module) {
+      "use strict";
+      var { isVariable } = require_check();
+      var { PREFIX, device, deviceOf, deviceProperty, field, isItem, notation, tagOffers, value } = require_form();
+      var { describe, deviceName, parseItem } = require_model();
+      var { say, suggest } = require_widgets();
+      var { errorText, t } = require_texts();
+      var targetVerdict = (text) => {
+        const named = deviceOf();
+        const readOnly = named && named.access !== "write" ? t("problem.readOnly", { plc: deviceName(named) }) : "";
+        if (!text) return readOnly ? { says: readOnly, bad: true } : { says: t("editor.noTarget") };
+        if (isVariable(text)) return { says: t("editor.variable") };
         try {
-          const item = parseItem(text, notation);
-          if (readOnly) return say(block, t("problem.readOnly", { plc: plcName(plc) }), true);
-          return say(block, describe(item, { ...plc, write: true }));
+          const item = parseItem(text, notation());
+          return readOnly ? { says: readOnly, bad: true } : { says: describe(item, device(), { write: true }) };
         } catch (error) {
-          return say(block, errorText(error), true);
+          return { says: errorText(error), bad: true };
         }
       };
-      var editWrite = (node) => {
-        open(node, PREFIX);
-        fillDefaults(node, PREFIX);
-        suggest($(`#${PREFIX}target`), tagOffers, isItem);
-        $(`#${PREFIX}target, #${PREFIX}plc`).on("input change", judgeTarget);
-        $(`#${PREFIX}plc`).on("change", () => $(`#${PREFIX}target`).trigger("change"));
-        $(`#${PREFIX}topic`).on("change", function() {
-          $(`#${PREFIX}topicText`).toggle($(this).val() === "fixed");
-        }).trigger("change");
+      var judgeTarget = () => {
+        const { says, bad } = targetVerdict(String(value("target") || "").trim());
+        say($("#nxline-write-note"), says, bad);
+      };
+      var prepareWriting = () => {
+        suggest(field("target"), tagOffers, isItem);
+        $(`#${PREFIX}target, #${PREFIX}${deviceProperty()}`).on("input change", judgeTarget);
+        field(deviceProperty()).on("change", () => field("target").trigger("change"));
+        field("topic").on("change", () => field("topicText").toggle(value("topic") === "fixed")).trigger("change");
         judgeTarget();
       };
-      var saveWrite = (node) => {
-        node.outputs = value("onFailure") === "output" ? 2 : 1;
+      var failureOutputs = () => value("onFailure") === "output" ? 1 : 0;
+      var writeLabel = (node) => node.target || "";
+      module.exports = { failureOutputs, prepareWriting, writeLabel };
+    }
+  });
+
+  // scripts/editor/flow.js
+  var require_flow = __commonJS({
+    "scripts/editor/flow.js"(exports, module) {
+      "use strict";
+      var { done } = require_check();
+      var { field, openForm, reads, value, writes } = require_form();
+      var { itemTexts, prepareReading, readLabel, resizeRead } = require_reading();
+      var { failureOutputs, prepareWriting, writeLabel } = require_writing();
+      var editRead = (node) => {
+        openForm("nx-read", node);
+        prepareReading(node);
+      };
+      var saveRead = (node) => {
+        node.items = itemTexts();
         done();
       };
-      var writeLabel = (node) => node.target || "";
-      module.exports = { editRead, saveRead, resizeRead, readLabel, editWrite, saveWrite, writeLabel };
+      var editWrite = (node) => {
+        openForm("nx-write", node);
+        prepareWriting();
+      };
+      var saveWrite = (node) => {
+        node.outputs = 1 + failureOutputs();
+        done();
+      };
+      var showMode = () => {
+        $(".nxline-reads").toggle(reads());
+        $(".nxline-writes").toggle(writes());
+        $(".nxline-both").toggle(value("mode") === "both");
+        ["itemsType", "target", "interval"].forEach((name) => field(name).trigger("change"));
+      };
+      var editRegulator = (node) => {
+        openForm("chino-regulator", node);
+        prepareReading(node);
+        prepareWriting();
+        field("mode").on("change", showMode);
+        showMode();
+      };
+      var saveRegulator = (node) => {
+        node.items = itemTexts();
+        node.outputs = (reads() ? 1 : 0) + (writes() ? 1 + failureOutputs() : 0);
+        done();
+      };
+      var outputRole = (mode, index) => {
+        const roles = { read: ["values"], write: ["confirmed", "failed"], both: ["values", "confirmed", "failed"] };
+        return (roles[mode] || roles.read)[index];
+      };
+      var modeLabel = (node) => node.mode === "write" ? writeLabel(node) : readLabel(node);
+      module.exports = {
+        editRead,
+        saveRead,
+        resizeRead,
+        readLabel,
+        editWrite,
+        saveWrite,
+        writeLabel,
+        editRegulator,
+        saveRegulator,
+        modeLabel,
+        outputRole
+      };
     }
   });
 
@@ -2326,6 +3469,7 @@ var nxlineSerialPlc = (() => {
         done: require_check().done,
         ...require_line(),
         ...require_plc(),
+        ...require_regulator(),
         ...require_flow()
       };
     }

@@ -36,6 +36,15 @@ const readStation = value => {
 const markHex = value =>
   typeof value === 'string' ? value.replace(/(?<![$\w])(?=\d?[a-f])[\da-f]{2}(?!\w)/gi, '0x$&') : value
 
+/**
+ * The master IDs of a configuration, as numbers.
+ * @param {unknown} value as the option `masterIds`: `E2..E9`
+ * @param {number[]} [stations] of the line
+ * @returns {readonly number[]}
+ * @throws {PlcError} BAD_MASTER_ID
+ */
+const masterIdsOf = (value, stations = []) => masterIdList(markHex(value), { stations })
+
 /** Absolute word addresses at which an area begins or ends. */
 const boundsOf = areas => areas.list.flatMap(({ base, words }) => [base, base + words])
 
@@ -93,7 +102,7 @@ const readSettings = (given, character) => {
     name: nameOf(given.name, station),
     timeout: wholeNumber('timeout', given.timeout, { fallback: 3000, least: 10, most: 600000 }),
     attempts: wholeNumber('attempts', given.attempts, { fallback: 3, least: 1, most: 20 }),
-    masterIds: masterIdList(markHex(given.masterIds), { stations }),
+    masterIds: masterIdsOf(given.masterIds, stations),
     soleMaster: isOn(given.soleMaster),
     access: choice('access', given.access, ['read', 'write']),
     ranges: readRanges(given.writableRanges, notation),
@@ -106,4 +115,4 @@ const readSettings = (given, character) => {
   }
 }
 
-module.exports = { readSettings, readStation }
+module.exports = { masterIdsOf, readSettings, readStation }

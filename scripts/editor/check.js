@@ -1,9 +1,12 @@
 'use strict'
 const { PROPERTIES, readProperty, allowed, applies } = require('../../nodes/properties')
 const { t, errorText } = require('./texts')
-const { readSettings } = require('../../lib/device/settings')
+const { truthy } = require('./widgets')
+const { readRanges } = require('../../lib/device/options')
+const { mixedConflict } = require('../../lib/device/mixed')
+const { masterIdsOf, readSettings } = require('../../lib/device/settings')
 const { readTags } = require('../../lib/tag/tags')
-const { notationOf, notationWithTags, parseItem, plcName } = require('./model')
+const { TYPES, attempt, deviceName, notationOf, notationWithTags, parseItem } = require('./model')
 
 /** Validators of the dialogs: they answer true, or the reason as a text. */
 
@@ -26,52 +29,110 @@ const view = node => new Proxy({}, { get: (_, name) => current(node, String(name
 
 const isVariable = value => typeof value === 'string' && /^\s*\$\{[^}]+\}\s*$/.test(value)
 
-const sameStation = (node, station) => {
+/** Other devices on the line of a device. */
+const neighbours = node => {
   const line = current(node, 'line')
-  let twin = null
+  const found = []
   RED.nodes.eachConfig(other => {
-    const known = other.type === 'nx-config' && other.id !== node.id && other.line === line && !other.d
-    if (known && String(other.station) === String(station).trim()) twin = other
+    if (TYPES.includes(other.type) && other.id !== node.id && other.line === line && !other.d) found.push(other)
     return true
   })
-  return twin
+  return found
+}
+
+const memberOf = ({ type, station, masterIds }) => ({
+  protocol: type === 'chino-config' ? 'modbus' : 'nx',
+  station: Number(station),
+  masterIds: [...attempt(() => masterIdsOf(masterIds), [])],
+  name: ''
+})
+
+/** Whether a number can stand on the line beside the others. */
+const checkNumber = type => (node, station) => {
+  const own = memberOf({ type, station, masterIds: current(node, 'masterIds') })
+  for (const other of neighbours(node)) {
+    const name = deviceName(other)
+    if (String(other.station) === String(station).trim()) return t('problem.sameStation', { other: name })
+    const reason = isVariable(other.station) ? '' : mixedConflict(own, memberOf(other))
+    if (reason) return t('problem.mixed', { other: name, reason })
+  }
+  return true
+}
+
+const checkPlcNumber = checkNumber('nx-config')
+const checkRegulatorNumber = checkNumber('chino-config')
+
+/** A unit that is larger than the count would leave nothing to ask for. */
+const checkUnit = count => (node, value) => Number(value) <= Number(current(node, count)) || t('problem.unit')
+
+/** The item list of a node whose device, a `type`, is saved under `property`. */
+const checkItems = (property, type) => (node, value) => {
+  if (current(node, 'itemsType') === 'msg') return true
+  if (!value || value.length === 0) return t('problem.noItems')
+  const notation = notationWithTags(deviceOf(node, property) || { type })
+  value.filter(text => !isVariable(text)).forEach(text => parseItem(text, notation))
+  return true
+}
+
+const checkTarget = property => (node, value) => {
+  if (!String(value || '').trim()) return true
+  const device = deviceOf(node, property)
+  if (!device) return true
+  parseItem(value, notationWithTags(device))
+  return device.access === 'write' ? true : t('problem.readOnly', { plc: deviceName(device) })
+}
+
+const deviceOf = (node, property) => RED.nodes.node(current(node, property))
+
+const isBroadcast = node => {
+  const device = deviceOf(node, 'regulator')
+  return Boolean(device) && String(device.station).trim() === '0'
+}
+
+const chino = node => {
+  const { addressMode, wordOrder } = view(node)
+  return { type: 'chino-config', addressMode, wordOrder }
 }
 
 /** Checks beyond a property's own row; they throw a PlcError or answer a text. */
 const MORE = {
   'nx-config': {
-    station(node, value) {
-      const twin = sameStation(node, value)
-      return twin ? t('problem.sameStation', { other: plcName(twin) }) : true
-    },
+    station: checkPlcNumber,
     masterIds: (_node, value) => Boolean(readSettings({ station: 255, masterIds: value }, 1)),
     writableRanges(node, writableRanges) {
       const { areas } = view(node)
       return Boolean(readSettings({ station: 255, areas: areas || [], writableRanges }, 1))
     },
-    areas: (_node, value) => Boolean(notationOf(value)),
+    areas: (_node, value) => Boolean(notationOf({ areas: value })),
     tags(node, value) {
-      readTags(value, notationOf(node.areas))
+      readTags(value, notationOf({ areas: node.areas }))
       return true
     }
   },
-  'nx-read': {
-    items(node, value) {
-      if (current(node, 'itemsType') === 'msg') return true
-      if (!value || value.length === 0) return t('problem.noItems')
-      const notation = notationWithTags(RED.nodes.node(current(node, 'plc')))
-      value.filter(text => !isVariable(text)).forEach(text => parseItem(text, notation))
+  'chino-config': {
+    station(node, value) {
+      const all = Number(value) === 0 && !truthy(current(node, 'broadcast'))
+      return all ? t('problem.broadcastOff') : checkRegulatorNumber(node, value)
+    },
+    protocol(node, value) {
+      const line = RED.nodes.node(current(node, 'line'))
+      return value === 'rtu' && line && String(line.dataBits) === '7' ? t('problem.dataBits') : true
+    },
+    coilUnit: checkUnit('coilRead'),
+    discreteUnit: checkUnit('discreteRead'),
+    writableRanges: (node, value) => Boolean(readRanges(value, notationOf(chino(node)))),
+    tags(node, value) {
+      readTags(value, notationOf(chino(node)))
       return true
     }
   },
-  'nx-write': {
-    target(node, value) {
-      if (!String(value || '').trim()) return true
-      const plc = RED.nodes.node(current(node, 'plc'))
-      if (!plc) return true
-      parseItem(value, notationWithTags(plc))
-      return plc.access === 'write' ? true : t('problem.readOnly', { plc: plcName(plc) })
-    }
+  'nx-read': { items: checkItems('plc', 'nx-config') },
+  'nx-write': { target: checkTarget('plc') },
+  'chino-regulator': {
+    mode: (node, value) => value === 'write' || !isBroadcast(node) || t('problem.broadcastMode'),
+    verify: (node, value) => !truthy(value) || !isBroadcast(node) || t('problem.broadcastMode'),
+    items: checkItems('regulator', 'chino-config'),
+    target: checkTarget('regulator')
   }
 }
 

@@ -6,5 +6,6 @@ module.exports = {
   done: require('./check').done,
   ...require('./line'),
   ...require('./plc'),
+  ...require('./regulator'),
   ...require('./flow')
 }

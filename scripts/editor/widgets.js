@@ -38,7 +38,7 @@ const fillDefaults = (node, prefix) => {
       if (field.is(':checkbox')) field.prop('checked', value)
       else field.val(String(value))
     }
-    if (field.is('select') && !field.prop('multiple') && !name.match(/^(line|plc)$/)) {
+    if (field.is('select') && !field.prop('multiple') && !name.match(/^(line|plc|regulator)$/)) {
       keepUnknown(field, node[name] === undefined ? value : node[name])
     }
   }
@@ -119,10 +119,14 @@ const say = (block, text, bad = false) =>
     .css('color', bad ? 'var(--red-ui-text-color-error)' : 'var(--red-ui-secondary-text-color)')
 
 /** A small input of a table, with its name (or what an empty one means) as placeholder, and a tooltip. */
-const cell = (name, value, { width = '80px', grow = false, shows = t(`column.${name}`) } = {}) =>
+const cell = (
+  name,
+  value,
+  { width = '80px', grow = false, shows = t(`column.${name}`), hint = t(`tooltip.${name}`) } = {}
+) =>
   $('<input type="text">')
     .addClass(`nxline-${name}`)
-    .attr({ placeholder: shows, title: t(`tooltip.${name}`), 'aria-label': t(`column.${name}`) })
+    .attr({ placeholder: shows, title: hint, 'aria-label': t(`column.${name}`) })
     .css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 })
     .val(value === undefined || value === null ? '' : String(value))
 

@@ -7,7 +7,7 @@ const vm = require('node:vm')
 
 const ROOT = path.join(__dirname, '..', '..')
 const NODES = path.join(ROOT, 'nodes')
-const TYPES = ['plc-line', 'nx-config', 'nx-read', 'nx-write']
+const TYPES = ['plc-line', 'nx-config', 'nx-read', 'nx-write', 'chino-config', 'chino-regulator']
 const LANGUAGES = ['en-US', 'ko']
 
 const html = type => fs.readFileSync(path.join(NODES, `${type}.html`), 'utf8')
@@ -27,7 +27,7 @@ const translator = language => (key, values) => {
 
 /**
  * @param {{ language?: string, nodes?: any[] }} [options] nodes: what RED.nodes.node finds
- * @returns {{ types: Record<string, any>, ui: any }} the definitions of the four types
+ * @returns {{ types: Record<string, any>, ui: any }} the definitions of all types
  */
 const loadDialogs = ({ language = 'en-US', nodes = [] } = {}) => {
   const types = {}

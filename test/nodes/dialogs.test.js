@@ -6,6 +6,8 @@ const { PROPERTIES } = require('../../nodes/properties')
 const { build, TARGET } = require('../../scripts/build-editor')
 const { TYPES, NODES, html, loadDialogs } = require('./dialogs')
 
+const WRITERS = ['nx-write', 'chino-regulator']
+
 describe('node dialogs', () => {
   it('resources/editor.js is what scripts/build-editor.js makes', () => {
     assert.equal(fs.readFileSync(TARGET, 'utf8'), build(), 'run: node scripts/build-editor.js')
@@ -18,7 +20,7 @@ describe('node dialogs', () => {
       for (const [name, row] of Object.entries(PROPERTIES[type])) {
         assert.equal(JSON.stringify(defaults[name].value), JSON.stringify(row.fallback), name)
       }
-      assert.equal(outputs?.value, type === 'nx-write' ? 1 : undefined)
+      assert.equal(outputs?.value, WRITERS.includes(type) ? 1 : undefined)
     })
 
     it(`${type}: a field for each property, a label for each field, no foreign colours or styles`, () => {
@@ -36,7 +38,7 @@ describe('node dialogs', () => {
     for (const type of TYPES) {
       for (const [name, row] of Object.entries(PROPERTIES[type])) {
         if (row.kind !== 'choice') continue
-        const select = new RegExp(`<select id="node-(?:config-)?input-${name}"[^>]*>([\\s\\S]*?)</select>`).exec(
+        const select = new RegExp(`<select\\s+id="node-(?:config-)?input-${name}"[^>]*>([\\s\\S]*?)</select\\s*>`).exec(
           html(type)
         )
         const offered = [...select[1].matchAll(/<option value="([^"]*)"/g)].map(([, value]) => value)
@@ -45,18 +47,23 @@ describe('node dialogs', () => {
     }
   })
 
-  it('nx-write without a saved number of outputs keeps its second wire', () => {
+  it('a node without a saved number of outputs keeps its wires', () => {
     // the editor cuts wires beyond the definition's number where the flow does not give one
-    const { outputs, defaults } = loadDialogs().types['nx-write']
-    assert.equal(outputs, 2)
-    assert.equal(defaults.outputs.value, 1)
+    const { types } = loadDialogs()
+    for (const [type, most] of [
+      ['nx-write', 2],
+      ['chino-regulator', 3]
+    ]) {
+      assert.equal(types[type].outputs, most)
+      assert.equal(types[type].defaults.outputs.value, 1)
+    }
   })
 
   it('the examples hold every property: a dialog that is closed with Done changes nothing', () => {
     const folder = path.join(NODES, '..', 'examples')
     for (const file of fs.readdirSync(folder).filter(name => name.endsWith('.json'))) {
       for (const node of JSON.parse(fs.readFileSync(path.join(folder, file), 'utf8'))) {
-        const wanted = Object.keys(PROPERTIES[node.type] ?? {}).concat(node.type === 'nx-write' ? 'outputs' : [])
+        const wanted = Object.keys(PROPERTIES[node.type] ?? {}).concat(WRITERS.includes(node.type) ? 'outputs' : [])
         assert.deepEqual(
           wanted.filter(name => !Object.hasOwn(node, name)),
           [],
@@ -72,7 +79,10 @@ describe('node dialogs', () => {
     assert.equal(types['nx-write'].category, 'serial PLC')
     assert.equal(types['nx-read'].paletteLabel, 'NX PLC read')
     assert.equal(types['nx-write'].paletteLabel, 'NX PLC write')
-    for (const type of ['nx-read', 'nx-write']) {
+    assert.equal(types['chino-regulator'].category, 'serial PLC')
+    assert.equal(types['chino-regulator'].paletteLabel, 'CHINO regulator (Modbus)')
+    assert.notEqual(types['chino-regulator'].color, types['nx-read'].color)
+    for (const type of ['nx-read', 'nx-write', 'chino-regulator']) {
       assert.ok(fs.existsSync(path.join(NODES, 'icons', types[type].icon)))
     }
   })
@@ -89,8 +99,20 @@ describe('validators', () => {
     access: 'read',
     tags: [{ name: 'level', address: 'W10', type: 'float32' }]
   }
+  const regulator = {
+    id: 'regulator',
+    type: 'chino-config',
+    line: 'line',
+    name: 'Zone',
+    station: '11',
+    access: 'write',
+    tags: [{ name: 'current', address: '301003' }]
+  }
+  const readOnly = { ...regulator, id: 'readOnly', line: 'other', name: '', station: '12', access: 'read', tags: [] }
+  const all = { ...regulator, id: 'all', line: 'other', name: 'All', station: '0', broadcast: true, tags: [] }
+  const seven = { id: 'seven', type: 'plc-line', transport: 'serial', path: '/dev/ttyS8', dataBits: '7' }
   const unnamed = { id: 'unnamed', type: 'nx-config', line: 'line', name: '', station: '7' }
-  const { types } = loadDialogs({ nodes: [line, plc, unnamed] })
+  const { types } = loadDialogs({ nodes: [line, plc, unnamed, regulator, readOnly, all, seven] })
   const judge = (type, name, value, node = {}) =>
     types[type].defaults[name].validate.call({ id: 'own', ...node }, value, {})
 
@@ -136,7 +158,49 @@ describe('validators', () => {
     ['nx-write', 'target', 'M0', /Oven is read-only/, { plc: 'plc' }],
     ['nx-write', 'target', 'nothing', /not an address/, { plc: 'plc' }],
     ['nx-write', 'target', 'M0', /^NX PLC 7 is read-only/, { plc: 'unnamed' }],
-    ['nx-config', 'station', '7', /^NX PLC 7 on this line/, { line: 'line' }]
+    ['nx-config', 'station', '7', /^NX PLC 7 on this line/, { line: 'line' }],
+    ['nx-config', 'station', '11', /^Zone on this line/, { line: 'line' }],
+    ['nx-config', 'station', '255', /with Zone: NX station 255 answers/, { line: 'line' }],
+    ['chino-config', 'station', '', /needed/],
+    ['chino-config', 'station', '247', true],
+    ['chino-config', 'station', '248', /0 to 247/],
+    ['chino-config', 'station', '0', /allow broadcasts/],
+    ['chino-config', 'station', '0', true, { broadcast: true }],
+    ['chino-config', 'station', '0', /with Oven: a MODBUS broadcast/, { broadcast: true, line: 'line' }],
+    ['chino-config', 'station', '1', /^Oven on this line/, { line: 'line' }],
+    ['chino-config', 'station', '12', /^CHINO 12 on this line/, { line: 'other' }],
+    ['chino-config', 'station', '226', /master ID 226/, { line: 'line' }],
+    ['chino-config', 'protocol', 'rtu', /8 data bits/, { line: 'seven' }],
+    ['chino-config', 'protocol', 'ascii', true, { line: 'seven' }],
+    ['chino-config', 'protocol', 'rtu', true, { line: 'line' }],
+    ['chino-config', 'timeout', '${T}', true],
+    ['chino-config', 'coilUnit', '16', true, { coilRead: 2000 }],
+    ['chino-config', 'coilUnit', '16', /more than the count/, { coilRead: '8' }],
+    ['chino-config', 'discreteUnit', '16', /more than the count/, { discreteRead: '8' }],
+    ['chino-config', 'coilFunction', '06', /Known are 0F, 05, auto/],
+    ['chino-config', 'holdingWrite', '124', /1 to 123/],
+    ['chino-config', 'writableRanges', '400001..400010, 001001', true],
+    ['chino-config', 'writableRanges', 'M0..M15', /not an address/],
+    ['chino-config', 'tags', regulator.tags, true],
+    ['chino-config', 'tags', [{ name: 'gradient', address: '' }], /gradient is not valid/],
+    ['chino-config', 'tags', [{ name: 'alarm', address: '1001' }], /zero in front/],
+    ['chino-config', 'tags', [{ name: 'bit', address: '400000' }], /outside/, { addressMode: '1-base' }],
+    ['chino-config', 'tags', [{ name: 'bit', address: '400000' }], true, { addressMode: '0-base' }],
+    ['chino-regulator', 'mode', 'read', true, { regulator: 'regulator' }],
+    ['chino-regulator', 'mode', 'read', /only be written/, { regulator: 'all' }],
+    ['chino-regulator', 'mode', 'write', true, { regulator: 'all' }],
+    ['chino-regulator', 'verify', true, /not read back/, { regulator: 'all', mode: 'write' }],
+    ['chino-regulator', 'verify', true, true, { regulator: 'regulator', mode: 'write' }],
+    ['chino-regulator', 'items', [], /at least one/, { mode: 'read' }],
+    ['chino-regulator', 'items', [], /at least one/, { mode: 'both' }],
+    ['chino-regulator', 'items', [], true, { mode: 'write' }],
+    ['chino-regulator', 'items', ['400108', 'hr107.05', 'current', '${ITEM}'], true, { regulator: 'regulator' }],
+    ['chino-regulator', 'items', ['400108', 'M0'], /not an address/, { regulator: 'regulator' }],
+    ['chino-regulator', 'items', ['400108'], true],
+    ['chino-regulator', 'target', 'M0', true, { regulator: 'regulator', mode: 'read' }],
+    ['chino-regulator', 'target', 'M0', /not an address/, { regulator: 'regulator', mode: 'write' }],
+    ['chino-regulator', 'target', '400001', true, { regulator: 'regulator', mode: 'both' }],
+    ['chino-regulator', 'target', '400001', /^CHINO 12 is read-only/, { regulator: 'readOnly', mode: 'both' }]
   ]
   for (const [type, name, value, expected, node] of cases) {
     it(`${type}.${name} ${JSON.stringify(value)}${node ? ` with ${JSON.stringify(node)}` : ''}`, () => {

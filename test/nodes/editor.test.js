@@ -1,7 +1,8 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { notationWithTags, parseItem } = require('../../scripts/editor/model')
-const { areaFault, merged } = require('../../scripts/editor/table')
+const { areaFault } = require('../../scripts/editor/areas')
+const { merged } = require('../../scripts/editor/table')
 const { offersFor } = require('../../scripts/editor/widgets')
 
 /** What the dialogs decide without a page. */

@@ -6,6 +6,8 @@ const { CODES } = require('../../lib/error')
 const { statusOf } = require('../../nodes/status')
 const { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, lookUp } = require('./dialogs')
 
+const ON_TABS = ['nx-read', 'nx-write', 'chino-regulator']
+
 const leaves = (tree, prefix = '') =>
   Object.entries(tree).flatMap(([key, value]) =>
     typeof value === 'string' ? [prefix + key] : leaves(value, `${prefix}${key}.`)
@@ -24,7 +26,7 @@ const quoted = (text, pattern) => [...text.matchAll(pattern)].map(([, found]) =>
 const ownKeys = type => [
   ...quoted(html(type), /data-i18n="(?:\[\w+\])?([^"]+)"/g),
   ...quoted(html(type), /_\(\s*'([\w-]+\.[\w.]+)'/g),
-  ...quoted(html(type), /'(nx-write\.port\.\w+)'/g)
+  ...quoted(html(type), /'((?:nx-write|chino-regulator)\.port\.\w+)'/g)
 ]
 
 /** Keys of what the dialogs share. */
@@ -33,7 +35,7 @@ const sharedKeys = () => {
   const columns = quoted(editor, /\b(?:cell|pick|tick)\('(\w+)'/g)
   const problems = quoted(sources('nodes'), /problem: '(\w+)'/g)
   return [
-    ...quoted(editor, /'((?:tab|editor|problem|test)\.\w+)'/g),
+    ...quoted(editor, /'((?:tab|editor|problem|template|test)\.\w+)'/g),
     ...columns.flatMap(name => [`column.${name}`, `tooltip.${name}`]),
     ...problems.map(name => `problem.${name}`)
   ]
@@ -73,7 +75,7 @@ describe('locales', () => {
         const help = fs.readFileSync(path.join(NODES, 'locales', language, `${type}.html`), 'utf8')
         assert.match(help, new RegExp(`data-help-name="${type}"`))
         assert.match(help, />\s*<p>[^<]{20,}/, 'the first paragraph is the tooltip')
-        const wanted = type.startsWith('nx-r') || type.startsWith('nx-w') ? 4 : 2
+        const wanted = ON_TABS.includes(type) ? 4 : 2
         assert.equal([...help.matchAll(/<h3>/g)].length, wanted)
       })
     }

@@ -4,6 +4,7 @@ const os = require('node:os')
 const { createRequire } = require('node:module')
 const { startNodeRed } = require('../support/node-red')
 const { openWire } = require('./bench')
+const { TYPES } = require('./dialogs')
 const { freePort } = require('../../examples/demo/ports.js')
 
 // Node-RED's own
@@ -67,7 +68,7 @@ describe('nodes in a real Node-RED', function () {
     await wire?.close()
   })
 
-  it('loads the four types without a warning', async () => {
+  it('loads all types without a warning', async () => {
     const { json } = await call('GET', '/nodes', { user: 'admin' }).then(async ({ status }) => {
       assert.equal(status, 200)
       const answer = await fetch(`${red.url}/nodes`, {
@@ -76,7 +77,7 @@ describe('nodes in a real Node-RED', function () {
       return { json: await answer.json() }
     })
     const own = json.filter(({ module }) => module === '@nxline/node-red-serial-plc')
-    assert.deepEqual(own.flatMap(({ types }) => types).sort(), ['nx-config', 'nx-read', 'nx-write', 'plc-line'])
+    assert.deepEqual(own.flatMap(({ types }) => types).sort(), [...TYPES].sort())
     assert.ok(own.every(({ enabled, err }) => enabled && !err))
   })
 

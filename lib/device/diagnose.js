@@ -92,12 +92,12 @@ async function examine(test) {
   const latency = wire.transport === 'serial' ? latencyTimer(wire.path, given.files) : null
   const late = lateness(lease, test.station)
   const since = clock.wall()
-  const from = clock.now()
   const result = await ask(lease, given, test.choice)
   if (result.code === 'TIMEOUT') await late.listen(clock, lease.line.memory(test.station).bound)
   late.stop()
   const evidence = evidenceOf(lease.line.trace(), { station: test.station, since, expected: given.protocol })
-  const seen = { result, late: late.event, waited: Math.round(clock.now() - from), evidence }
+  const waited = evidence.sentAt > 0 ? Math.max(0, Math.round(clock.wall() - evidence.sentAt)) : 0
+  const seen = { result, late: late.event, waited, evidence }
   const ok = result.ok || (!chosen && PROOFS.has(result.code))
   const found = ok ? { cause: null } : await findCause(test, seen)
   return report(test, { ...seen, ...found, ok, latency: await latency })
@@ -153,7 +153,7 @@ async function trials(test, facts) {
   const end = clock.now() + (given.trialTime ?? TRIAL_TIME)
   Object.assign(test, { facts, isOver: () => clock.now() >= end })
   const found = await tryModes(test, facts.evidence.sent)
-  if (found) return { cause: found }
+  if (found) return { cause: found, spoken: true }
   if (!given.tryOtherSpeeds || wire.transport === 'tcp' || !owned || isShared(pool, wire, 1)) return null
   await test.lease.release()
   const other = await trySpeeds(test, { isUsed: () => isShared(pool, wire, 0) })
@@ -168,9 +168,11 @@ const notTried = ({ given, wire, shared, owned }) => {
 }
 
 function report(test, seen) {
-  const { result, waited, late, evidence, ok, cause, framing } = seen
+  const { result, waited, late, evidence, ok, cause, framing, spoken } = seen
   const { wire, choice, goesOut, shared, tried, station } = test
-  const answered = ok || hasSpoken(result.code) || ANSWERED.has(result.code)
+  const reached = ok || hasSpoken(result.code) || ANSWERED.has(result.code)
+  // too late, or to another question, is an answer, too
+  const answered = reached || late !== null || spoken === true
   // the speed on the wire is the serial server's
   const own = answered && wire.transport !== 'tcp' ? wire : undefined
   const found = framing ?? own
@@ -180,7 +182,7 @@ function report(test, seen) {
     cause,
     seen: {
       ...{ station, item: choice.item, goesOut, value, ms: evidence.ms, waited, code: result.code, text: result.text },
-      ...{ reached: answered, shared, tried, notTried: notTried(test) },
+      ...{ reached, shared, tried, notTried: notTried(test) },
       sent: evidence.sent.toString('hex'),
       received: evidence.seen.toString('hex'),
       echo: evidence.echo || test.lease.line.echo === 'present',
@@ -192,7 +194,7 @@ function report(test, seen) {
   }
 }
 
-function sheetFacts(test, { ok, answered, found, result, late, evidence, cause, framing, latency }) {
+function sheetFacts(test, { ok, answered, found, result, evidence, cause, framing, latency }) {
   const { given, wire, path, station, timeout, choice, goesOut, lease } = test
   const other = evidence.frames.find(frame => !frame.query && frame.station !== station)
   return {
@@ -203,7 +205,7 @@ function sheetFacts(test, { ok, answered, found, result, late, evidence, cause, 
     value: result.ok ? result.value : undefined,
     echo: lease.line.echo,
     opened: evidence.sent.length > 0,
-    heard: answered || framing || late ? station : other?.station
+    heard: answered || framing ? station : other?.station
   }
 }
 
@@ -211,7 +213,7 @@ function sheetFacts(test, { ok, answered, found, result, late, evidence, cause, 
  * @typedef {object} Diagnosis
  * @property {boolean} ok the station answers with these settings
  * @property {import('./diagnosis/causes').Cause | null} cause the likely one; null if ok
- * @property {Record<string, any>} seen facts: `station` `item` `goesOut` `value` `ms` (from query to answer) `waited` (ms in all) `code` `text`
+ * @property {Record<string, any>} seen facts: `station` `item` `goesOut` `value` `ms` (from query to answer) `waited` (ms since the query) `code` `text`
  *   (of the read's error) `reached` (the station itself has spoken, if only to refuse) `sent` `received` (hex, without our echo) `echo` `stations` (numbers heard among stray bytes) `lateness` (ms, or null)
  *   `framing` (with which it answers, or null) `shared` `tried` (`[{ what, answered, code }]`) `notTried` (why not, or '')
  * @property {import('./diagnosis/sheet').Row[]} rows

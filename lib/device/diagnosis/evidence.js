@@ -19,8 +19,8 @@ function without(bytes, part) {
  *
  * @param {{ t: number, dir: string, station: any, bytes: string, note: string }[]} rows of `line.trace()`
  * @param {{ station: any, since: number, expected: 'nx'|'rtu'|'ascii' }} options since: epoch ms
- * @returns {{ sent: Buffer, seen: Buffer, echo: boolean, frames: import('./frames').Found[], ms: number }}
- *   sent: the last query; seen: all that came and is not our own echo; ms: from the last query out to the last frame in
+ * @returns {{ sent: Buffer, seen: Buffer, echo: boolean, frames: import('./frames').Found[], sentAt: number, ms: number }}
+ *   sent: the last query, sentAt: when (epoch ms; 0: nothing was sent); seen: all that came and is not our own echo; ms: from the last query out to the last frame in
  */
 function evidenceOf(rows, { station, since, expected }) {
   let mine = false
@@ -44,6 +44,7 @@ function evidenceOf(rows, { station, since, expected }) {
     seen: rest,
     echo: echo || found > 0,
     frames: findFrames(rest, expected),
+    sentAt: times.out,
     ms: Math.max(0, Math.round(times.in - times.out))
   }
 }

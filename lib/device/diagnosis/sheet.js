@@ -89,6 +89,9 @@ const proven = facts =>
 
 const OF_SERVER = 'the serial server has a setting of its own; this one is for the arithmetic of times'
 
+/** Somebody else's number. @param {string} id @param {Record<string, any>} facts */
+const isForeign = (id, { heard, station }) => id === 'devicePrefix' && heard !== station
+
 /** What is not `wrong`: proven, or open. @type {Record<string, (facts: Record<string, any>, value: any, id: string) => Verdict>} */
 const KINDS = {
   wire: facts => proven(facts),
@@ -101,10 +104,10 @@ const KINDS = {
     opened
       ? { state: 'measured', result: 'ok', text: 'it could be opened, and took the query' }
       : { state: 'configured', result: 'open', text: 'nothing was sent' },
-  device: (facts, value) =>
-    value === undefined || value === null
+  device: (facts, value, id) =>
+    value === null
       ? { state: 'byHand', result: 'open', text: 'look at the device' }
-      : { state: 'measured', result: facts.answered ? 'ok' : 'ng', text: 'seen on the wire' },
+      : { state: 'measured', result: isForeign(id, facts) ? 'open' : 'ok', text: 'heard on the wire' },
   hand: (facts, _value, id) =>
     id === 'cable' && facts.answered
       ? { state: 'byHand', result: 'ok', text: 'it carries frames both ways' }

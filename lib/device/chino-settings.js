@@ -1,7 +1,6 @@
 'use strict'
 const { PlcError } = require('../error')
 const { TABLES, describeAddress } = require('../codec/modbus/address')
-const { FUNCTIONS } = require('../codec/modbus/functions')
 const { planTableWrites, planTables } = require('../plan')
 const { modbusNotation } = require('../tag/modbus-notation')
 const { blank, choice, isOn, nameOf, readRanges, wholeNumber } = require('./options')
@@ -9,6 +8,7 @@ const { blank, choice, isOn, nameOf, readRanges, wholeNumber } = require('./opti
 /** The configuration of a CHINO regulator, read and checked before anything is sent. Panel manual, driver settings. */
 
 const LAST_STATION = 247
+const MOST_SINGLES = 123 // frames in one conversation: a longer one would hold up the other stations
 
 /** Whole numbers: [setting, default, least, most]. Counts are the protocol's own limits at most. */
 const NUMBERS = Object.freeze(
@@ -89,14 +89,13 @@ const readCount = (most, unit = 1) => most - (most % unit)
 /** The four tables with the limits of this station: what it is asked for at once stays inside them also when it is rounded up. */
 const tablesOf = settings => {
   const { coilRead, coilUnit, discreteRead, discreteUnit, inputRead, holdingRead } = settings
-  // a function of one value has a frame for each: the count of a frame does not bind it
-  const write = (chosen, count, fn) =>
-    chosen === '05' || chosen === '06' ? FUNCTIONS.find(row => row.fn === fn)?.most : count
+  // a function of one value has a frame for each: the count of one frame does not bind it
+  const write = (chosen, count) => (chosen === '05' || chosen === '06' ? MOST_SINGLES : count)
   const limits = {
-    co: { read: readCount(coilRead, coilUnit), write: write(settings.coilFunction, settings.coilWrite, 0x0f) },
+    co: { read: readCount(coilRead, coilUnit), write: write(settings.coilFunction, settings.coilWrite) },
     di: { read: readCount(discreteRead, discreteUnit), write: 0 },
     ir: { read: inputRead, write: 0 },
-    hr: { read: holdingRead, write: write(settings.holdingFunction, settings.holdingWrite, 0x10) }
+    hr: { read: holdingRead, write: write(settings.holdingFunction, settings.holdingWrite) }
   }
   return TABLES.map(({ table, kind, base, size }) => ({ kind, from: base, to: base + size, ...limits[table] }))
 }
@@ -154,7 +153,6 @@ const readSettings = given => {
     reasons: REASONS,
     functions: { co: coilFunction, hr: holdingFunction },
     units: { 1: settings.coilUnit, 2: settings.discreteUnit },
-    most: { 1: settings.coilRead, 2: settings.discreteRead },
     describe: (place, { write }) => describeAddress(place, { write, coilFunction, holdingFunction }),
     plan: planOf(tablesOf(settings)),
     ...broadcastChecks(station)

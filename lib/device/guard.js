@@ -60,7 +60,6 @@ const checkTarget = (item, ranges) => {
 }
 
 const sameValue = (item, span, { item: limited, start }) =>
-  item.kind === limited.kind &&
   span.start === start &&
   item.type.name === limited.type.name &&
   (item.type.words === 1 || item.wordOrder === limited.wordOrder)

@@ -102,12 +102,12 @@ class ModbusTalk {
 
   *#reading(request) {
     const query = readQuery(request)
-    const { units, most } = this.#settings
+    const { units } = this.#settings
     const known = `${query.fn} ${query.base} ${query.count}`
     const { exact } = this.#memory
     const unit = exact.has(known) ? 1 : units[query.fn]
     const facts = { exact: false }
-    const result = yield* this.#counted(readDialog(query, { ...this.#options(), unit, most: most[query.fn], facts }))
+    const result = yield* this.#counted(readDialog(query, { ...this.#options(), unit, facts }))
     if (facts.exact) {
       if (exact.size >= MOST_EXACT) exact.clear()
       exact.add(known)

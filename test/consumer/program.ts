@@ -3,10 +3,13 @@ import {
   CODES,
   PRIORITY,
   PlcError,
+  createChinoRegulator,
   createNxPlc,
   createPool,
   listPorts,
   messagesOf,
+  mixedConflict,
+  openChinoRegulator,
   openNxPlc
 } from '@nxline/node-red-serial-plc'
 import { createNxLine, createVirtualClock, serveOnTcp } from '@nxline/node-red-serial-plc/sim'
@@ -53,6 +56,37 @@ export async function shared(): Promise<string> {
   }
 }
 
+export async function regulator(): Promise<string> {
+  const heater = openChinoRegulator({
+    path: '/dev/ttyUSB0',
+    station: 11,
+    protocol: 'rtu',
+    holdingFunction: 'auto',
+    access: 'write'
+  })
+  const { outcome } = await heater.write({ 400001: 500, '000001': true }, { verify: true })
+  const [output] = await heater.read('300001')
+  const { goesOut } = heater.regulator.describe('400001', { write: true })
+  await heater.close()
+  return outcome === 'confirmed' && output.quality === 'good' ? `${output.value} ${goesOut}` : (output.code ?? '')
+}
+
+export async function mixed(): Promise<string> {
+  const lease = createPool().open({ transport: 'serial', path: '/dev/ttyUSB0' }, { id: 'a', name: 'a' })
+  const members = [
+    createNxPlc({ lease, station: 1 }),
+    createChinoRegulator({ lease, station: '2', addressMode: '0-base', coilFunction: '05', broadcast: false })
+  ]
+  const reason: string = mixedConflict(members[0].member, members[1].member)
+  for (const device of members) device.close()
+  await lease.release()
+  return reason
+}
+
+// @ts-expect-error there is no such protocol
+createChinoRegulator({ lease: null, station: 1, protocol: 'tcp' })
+// @ts-expect-error a station is needed
+openChinoRegulator({ path: '/dev/ttyUSB0' })
 // @ts-expect-error a station is needed
 openNxPlc({ path: '/dev/ttyUSB0' })
 // @ts-expect-error there is no such format

@@ -24,7 +24,6 @@ describe('CHINO regulator: settings', () => {
       broadcast,
       functions,
       units,
-      most,
       turnaround,
       name,
       wordOrder
@@ -40,7 +39,6 @@ describe('CHINO regulator: settings', () => {
         broadcast,
         functions,
         units,
-        most,
         turnaround,
         name,
         wordOrder
@@ -55,7 +53,6 @@ describe('CHINO regulator: settings', () => {
         broadcast: null,
         functions: { co: '0F', hr: '10' },
         units: { 1: 1, 2: 1 },
-        most: { 1: 2000, 2: 2000 },
         turnaround: 100,
         name: 'station 11',
         wordOrder: 'low'

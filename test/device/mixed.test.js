@@ -108,7 +108,11 @@ describe('NX PLCs and regulators on one line', () => {
       () => openNxPlc({ ...common, station: 255 }),
       error => error.code === 'MIXED_LINE'
     )
+    const other = openChinoRegulator({ ...common, station: 2 })
     await clock.run(regulator.close())
+    // the line stays open, the number is free again
+    await clock.run(openNxPlc({ ...common, station: 1 }).close())
+    await clock.run(other.close())
     assert.equal(pool.lines().length, 0)
   })
 

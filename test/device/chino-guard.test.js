@@ -1,6 +1,9 @@
 'use strict'
 
 const assert = require('node:assert/strict')
+const fc = require('fast-check')
+const { modbusNotation, parseItem } = require('../../lib')
+const { createGuard } = require('../../lib/device/guard')
 const { bench } = require('./chino-bench')
 
 const tags = [
@@ -116,6 +119,56 @@ describe('CHINO regulator: what may be written', () => {
     )
     assert.doesNotThrow(() => b.device.checkTarget('400031.00'))
     reader.close()
+  })
+
+  it('a limited tag binds exactly its bits: any item against any tag, counted bit by bit', () => {
+    const WIDTH = { uint16: 16, int16: 16, uint32: 32 }
+    const pad = (digit, number) => `${digit}${String(number).padStart(5, '0')}`
+    const register = fc.record({
+      number: fc.integer({ min: 1, max: 6 }),
+      type: fc.constantFrom('uint16', 'int16', 'uint32')
+    })
+    const coil = fc.record({
+      number: fc.integer({ min: 1, max: 70 }),
+      type: fc.constantFrom('uint16', 'int16', 'uint32')
+    })
+    // [text, first bit, after the last, type], bits of registers from 0, coils far behind
+    const registerOf = ({ number, type }) => [
+      `${pad(4, number)}:${type}`,
+      (number - 1) * 16,
+      (number - 1) * 16 + WIDTH[type],
+      type
+    ]
+    const coilsOf = ({ number, type }) => [
+      `${pad(0, number)}:${type}`,
+      5000 + number,
+      5000 + number + WIDTH[type],
+      type
+    ]
+    const numbers = fc.oneof(register.map(registerOf), coil.map(coilsOf))
+    const registerBit = fc.nat(110).map(bit => {
+      const text = `${pad(4, (bit >> 4) + 1)}.${String(bit & 15).padStart(2, '0')}`
+      return [text, bit, bit + 1, 'bool']
+    })
+    const oneCoil = fc
+      .integer({ min: 1, max: 110 })
+      .map(number => [pad(0, number), 5000 + number, 5001 + number, 'bool'])
+    const property = fc.property(
+      numbers,
+      fc.oneof(numbers, registerBit, oneCoil),
+      ([tag, from, to], [text, first, end, type]) => {
+        const notation = modbusNotation({ tags: [{ name: 'limited', address: tag, min: 0, max: 5 }] })
+        const guard = createGuard({ access: 'write', station: 1, ranges: [], notation, reasons: {} })
+        const item = parseItem(text, notation)
+        const raw = type === 'bool' ? [true] : item.type.encode(3)
+        const same = first === from && end === to && tag.endsWith(`:${type}`)
+        const refused = first < to && from < end && !same
+        const check = () => guard.checkValues(item, [raw])
+        if (refused) assert.throws(check, error => error.code === 'NOT_WRITABLE')
+        else assert.doesNotThrow(check)
+      }
+    )
+    fc.assert(property, { numRuns: 3000, seed: 11 })
   })
 
   describe('broadcast', () => {

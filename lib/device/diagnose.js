@@ -46,7 +46,7 @@ const ANSWERED = new Set(['NOT_A_VALUE'])
  * @param {any} [options.clock] @param {() => number} [options.random] 0 to 1
  * @returns {Promise<Diagnosis>}
  * @throws {import('../error').PlcError} (rejects) only for settings that cannot be used: BAD_SETTING, BAD_STATION, BAD_MASTER_ID, BAD_AREA,
- *   BAD_ADDRESS and its like, WIRE_CONFLICT
+ *   BAD_ADDRESS and its like, WIRE_CONFLICT, BROADCAST_REFUSED (station 0 of MODBUS cannot be read)
  */
 async function diagnose(options) {
   const test = prepare(options)
@@ -154,7 +154,7 @@ async function trials(test, facts) {
   Object.assign(test, { facts, isOver: () => clock.now() >= end })
   const found = await tryModes(test, facts.evidence.sent)
   if (found) return { cause: found, spoken: true }
-  if (!given.tryOtherSpeeds || wire.transport === 'tcp' || !owned || isShared(pool, wire, 1)) return null
+  if (!given.tryOtherSpeeds || wire.transport === 'tcp' || !owned) return null
   await test.lease.release()
   const other = await trySpeeds(test, { isUsed: () => isShared(pool, wire, 0) })
   return other && { cause: other.cause, framing: other.wire }

@@ -75,10 +75,49 @@ describe('diagnose: the likely cause, by the bytes that were seen', () => {
       assert.match(cause.remedy, /\.$/)
       assert.doesNotMatch(`${cause.text} ${cause.remedy}`, /[{}]|undefined|\?/)
       assert.deepEqual(wrong(sheet), rows)
-      for (const { id, result } of sheet) if (code === 'WRONG_ADDRESS' && id === 'speed') assert.equal(result, 'ok')
       await end()
     })
   }
+
+  it('the station itself has spoken: the rows of the wire are proven; a gateway has not', async () => {
+    for (const [number, expected] of /** @type {[number, any[]][]} */ ([
+      [4, [true, 'ok']],
+      [0x0a, [false, 'open']],
+      [0x0b, [false, 'open']]
+    ])) {
+      const { run, end } = bench(says(rtu(0x11, 0x83, number)), RTU)
+      const { seen, row } = await run()
+      assert.deepEqual([seen.reached, row('speed').result], expected)
+      await end()
+    }
+  })
+
+  it('a tag was chosen by the user: its refusal is a failure', async () => {
+    const { run, end } = bench(says(rtu(0x11, 0x83, 2)), RTU)
+    assert.equal((await run({ tags: [{ name: 'output', address: '400005' }] })).cause.code, 'WRONG_ADDRESS')
+    await end()
+  })
+
+  it('the number of another station is shown where it was heard, and is no set-up of ours', async () => {
+    const { run, end } = bench(says(rtu(3, 3, 2, 0, 7)), RTU)
+    const { row, seen } = await run()
+    const { value, state, result } = row('devicePrefix')
+    assert.deepEqual([value, state, result, seen.stations], [3, 'measured', 'open', [3]])
+    assert.equal(row('prefixProject').value, 17)
+    await end()
+  })
+
+  it('what was seen before is no evidence; nobody is left listening', async () => {
+    const { pool, base, clock, run } = bench((_query, { reply }, n) => n === 1 && reply(rtu(3, 3, 2, 0, 7)), RTU)
+    const lease = pool.open({ transport: 'serial', path: base.path }, { id: 'a', name: 'a' })
+    assert.equal((await run()).cause.code, 'OTHER_STATION')
+    await clock.advance(5)
+    const listening = lease.line.listenerCount('event')
+    assert.equal((await run()).cause.code, 'NO_BYTES')
+    assert.equal((await run({ lease })).cause.code, 'NO_BYTES')
+    assert.equal(lease.line.listenerCount('event'), listening)
+    await clock.run(lease.release())
+  })
 
   it('characters of 7 bits with parity, read as 8: ASCII, with what it is', async () => {
     const even = byte => byte | ((byte.toString(2).replaceAll('0', '').length % 2) << 7)

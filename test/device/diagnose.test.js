@@ -187,6 +187,7 @@ describe('diagnose: settings that cannot be used', () => {
     ['RTU with 7 data bits', { ...RTU, dataBits: 7 }, 'BAD_SETTING'],
     ['an item that is no address', { ...RTU, item: 'x9' }, 'BAD_ADDRESS'],
     ['a timeout that is none', { ...RTU, timeout: 'soon' }, 'BAD_SETTING'],
+    ['a broadcast, which nobody answers', { ...RTU, station: 0, broadcast: true }, 'BROADCAST_REFUSED'],
     ['ranges that are none', { ...RTU, writableRanges: 'x' }, 'BAD_ADDRESS']
   ]) {
     it(`${what}: ${code}, and nothing is sent`, async () => {

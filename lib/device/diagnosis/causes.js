@@ -112,7 +112,6 @@ const LINE_ROWS = Object.freeze({
   LINE_DOWN: ['port'],
   LINE_JAMMED: ['systemConfiguration'],
   WRITE_STALLED: ['otherSettings'],
-  BROADCAST_REFUSED: ['prefixProject'],
   MODBUS_ILLEGAL_FUNCTION: ['addressRange']
 })
 

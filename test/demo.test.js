@@ -11,6 +11,31 @@ const path = require('node:path')
 
 const START = path.join(__dirname, '../examples/demo/start.js')
 
+describe('demo flow', () => {
+  const flow = require('../examples/demo/flow.json')
+
+  it('writers say how many outputs they have, texts bring their units', () => {
+    for (const node of flow.filter(({ type }) => /^(nx-write|chino-regulator)$/.test(type)))
+      assert.equal(node.outputs, node.wires.length, node.name)
+    // the dashboard ignores any other format
+    for (const node of flow.filter(({ type }) => type === 'ui-text'))
+      assert.equal(node.format, '{{msg.payload}}', node.name)
+  })
+
+  it('has no text that the editor takes for a list of properties', () => {
+    const folder = path.join(__dirname, '../examples')
+    const files = fs.readdirSync(folder).filter(name => name.endsWith('.json'))
+    const flows = files.map(name => JSON.parse(fs.readFileSync(path.join(folder, name), 'utf8')))
+    // Node-RED's markdown: ": name (type) : text"
+    const list = /:[^:\n]+\([^:\n]+\).*?:/
+    const wrong = [flow, ...flows].flat().filter(({ info }) => list.test(info ?? ''))
+    assert.deepEqual(
+      wrong.map(({ info }) => list.exec(info)?.[0]),
+      []
+    )
+  })
+})
+
 describe('demo', function () {
   this.timeout(30000)
   let folder
@@ -46,7 +71,7 @@ describe('demo', function () {
     await shown(demo, 'Ctrl-C ends it')
     demo.child.kill('SIGINT')
     assert.deepEqual([...(await demo.ended)], [0, null], demo.err)
-    assert.deepEqual(Object.keys(counts(demo)), ['published', 'topics', 'writesConfirmed', 'errors'])
+    assert.deepEqual(Object.keys(counts(demo)), ['published', 'topics', 'writesConfirmed', 'errors', 'devices'])
     assert.deepEqual(fs.readdirSync(folder), [])
   })
 
@@ -71,6 +96,17 @@ describe('demo', function () {
     )
     for (const { child } of [one, two]) child.kill('SIGINT')
     assert.deepEqual([(await one.ended)[0], (await two.ended)[0]], [0, 0], one.err + two.err)
+  })
+
+  it('ends with code 0 only if all four stations delivered', async () => {
+    // a set value of each kind comes through within some seconds
+    const demo = start(['--seconds', '8'])
+    const [code] = await demo.ended
+    const { devices, errors } = counts(demo)
+    assert.deepEqual(Object.keys(devices).toSorted(), ['furnace', 'tank', 'zone1', 'zone2'])
+    for (const name of Object.keys(devices)) assert.ok(devices[name].published > 0, name)
+    assert.ok(devices.furnace.writesConfirmed > 0 && devices.zone1.writesConfirmed > 0, JSON.stringify(devices))
+    assert.deepEqual([code, errors], [0, 0], demo.out + demo.err)
   })
 
   it('a wrong number of seconds is refused', async () => {

@@ -1,7 +1,7 @@
 'use strict'
 
 /**
- * `npm start`: two simulated NX PLCs on a virtual serial line, an MQTT broker, Node-RED with flow and dashboard.
+ * `npm start`: two simulated NX PLCs and two regulators on one virtual serial line, an MQTT broker, Node-RED with flow and dashboard.
  *   npm start -- --seconds 20    ends by itself; the last line is what flowed, as JSON; code 1 if nothing did
  */
 
@@ -13,6 +13,8 @@ const { freePort } = require('./ports')
 const { startRuntime } = require('./runtime')
 const { startStations } = require('./stations')
 const { watch } = require('./watcher')
+
+const DEVICES = ['furnace', 'tank', 'zone1', 'zone2']
 
 const print = text => process.stdout.write(`${text}\n`)
 
@@ -46,8 +48,10 @@ function show({ stations, broker, runtime }) {
   print('')
   print(`  Dashboard   ${runtime.url}/dashboard`)
   print(`  Editor      ${runtime.url}/`)
-  print(`  MQTT        ${broker.url}   values: plant/#   set: plant/furnace/set/setpoint`)
-  print(`  Line        ${stations.address}   two simulated NX PLCs, stations 1 and 2, 38400 bit/s`)
+  print(
+    `  MQTT        ${broker.url}   values: plant/#   set: plant/furnace/set/setpoint, plant/zone1/set/manual_output`
+  )
+  print(`  Line        ${stations.address}   simulated: NX PLCs 1 and 2, regulators 11 and 12, 38400 bit/s`)
   print('')
 }
 
@@ -75,13 +79,19 @@ function secondsFrom(args) {
   return seconds
 }
 
+/** A run with a time is a test: values of each station and a confirmed set value of each kind must have come through (the first one takes 3 s). */
+function flowed({ devices }, seconds) {
+  const written = ['furnace', 'zone1'].every(name => devices[name]?.writesConfirmed > 0)
+  return DEVICES.every(name => devices[name]?.published > 0) && (written || seconds < 5)
+}
+
 async function main() {
   const seconds = secondsFrom(process.argv.slice(2))
   const asked = catchSignals()
   const parts = pile()
   let counts
   try {
-    print('starting: simulated PLCs, MQTT broker, Node-RED ...')
+    print('starting: simulated PLCs and regulators, MQTT broker, Node-RED ...')
     const demo = await startAll(parts)
     show(demo)
     print(seconds ? `  ends by itself after ${seconds} s` : '  Ctrl-C ends it')
@@ -91,9 +101,7 @@ async function main() {
     await parts.close()
   }
   print(JSON.stringify(counts))
-  // a run with a time is a test: values and a confirmed set value must have come through (the first one takes 3 s)
-  const flowed = asked.aborted || (counts.published > 0 && (counts.writesConfirmed > 0 || seconds < 5))
-  return seconds && !flowed ? 1 : 0
+  return seconds && !asked.aborted && !flowed(counts, seconds) ? 1 : 0
 }
 
 main().then(

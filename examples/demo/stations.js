@@ -3,7 +3,7 @@
 const fs = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
-const { createNxLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
+const { createLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
 
 const BAUD_RATE = 38400
 const TANK_PERIOD = 90000
@@ -11,7 +11,7 @@ const TANK_PERIOD = 90000
 const { sin, cos, PI } = Math
 const tankFills = time => cos((2 * PI * time) / TANK_PERIOD) < 0
 
-/** What the two processes do: rows of lib/sim/behaviour.js. */
+/** What the processes of the two PLCs do: rows of lib/sim/behaviour.js. The regulators bring their own, a heated zone. */
 const FURNACE = [
   { at: 'M10', as: 'int16', kind: 'follows', of: 'K0', ofAs: 'int16', from: 250, tau: 12000, ripple: 3, every: 100 },
   { at: 'M11', kind: 'follows', of: 'K0', gain: 0.24, from: 0, tau: 2500, ripple: 9, every: 100 },
@@ -26,20 +26,26 @@ const TANK = [
 ]
 
 /**
- * Two simulated NX PLCs on one line at 38400 bit/s: behind a virtual serial port, or behind TCP where there is none.
- * @returns {Promise<{ address: string, settings: object, line: object, close(): Promise<void> }>} settings: properties of `plc-line`
+ * Two simulated NX PLCs (stations 1 and 2) and two thyristor regulators (11 and 12, MODBUS RTU) on one line at 38400 bit/s: behind a
+ * virtual serial port, or behind TCP where there is none.
+ * @returns {Promise<{ address: string, settings: object, line: object, close(): Promise<void> }>} settings: properties of `plc-line`;
+ *   line: `stations` in the order of their numbers
  */
 async function startStations() {
-  const line = createNxLine({
+  const line = createLine({
     stations: [
-      { station: 1, behaviour: FURNACE },
-      { station: 2, behaviour: TANK }
+      { device: 'nx', station: 1, behaviour: FURNACE },
+      { device: 'nx', station: 2, behaviour: TANK },
+      { device: 'chino', station: 11 },
+      { device: 'chino', station: 12 }
     ],
     baudRate: BAUD_RATE
   })
-  const [furnace, tank] = line.plcs
+  const [furnace, tank, zone1, zone2] = line.stations
   furnace.set('K0', 1500)
   tank.set('K0', 30)
+  zone1.set('400001', 250)
+  zone2.set('400001', 600)
   try {
     return { line, ...onPty(line) }
   } catch (error) {

@@ -70,16 +70,20 @@ for (const { name, red, node } of RUNTIMES) {
         text
       ])
 
-    it('the values of both PLCs arrive, good and with units', async () => {
+    it('the values of PLCs and regulators arrive, good and with units', async () => {
       const { value } = await hear('plant/furnace/temperature', it => it.quality === 'good' && it.unit === '°C')
       assert.ok(value > 0 && value < 400)
       for (const topic of ['furnace/heating', 'tank/level', 'tank/flow', 'tank/batches', 'tank/pump', 'tank/lowest']) {
         await hear(`plant/${topic}`, it => it.quality === 'good')
       }
+      for (const zone of ['zone1', 'zone2']) {
+        for (const [name, unit] of Object.entries({ temperature: '°C', load_current: 'A', load_power: 'kW' }))
+          await hear(`plant/${zone}/${name}`, it => it.quality === 'good' && it.unit === unit && it.value > 0)
+      }
     })
 
     it('a set value of another client is written once, confirmed and read back', async () => {
-      const [furnace] = stations.line.plcs
+      const [furnace] = stations.line.stations
       const wrote = () => [...furnace.writes.values()].reduce((sum, times) => sum + times, 0)
       const before = wrote()
       publish('plant/furnace/set/setpoint', '266.5')
@@ -90,8 +94,18 @@ for (const { name, red, node } of RUNTIMES) {
       assert.equal(wrote() - before, 1)
     })
 
+    it('a set value for a regulator, too, and only for that one', async () => {
+      const [, , zone1, zone2] = stations.line.stations
+      const other = zone2.get('400001')
+      publish('plant/zone1/set/manual_output', '37.5')
+      const outcome = await hear('plant/zone1/outcome/manual_output', it => it.outcome === 'confirmed')
+      assert.deepEqual([outcome.items[0].value, outcome.items[0].outcome], [37.5, 'confirmed'])
+      await hear('plant/zone1/output', it => it.value === 37.5)
+      assert.deepEqual([zone1.get('400001'), zone1.writes.get('hr0'), zone2.get('400001')], [375, 1, other])
+    })
+
     it('one out of its limits is refused, and nothing is written', async () => {
-      const [furnace] = stations.line.plcs
+      const [furnace] = stations.line.stations
       const held = furnace.get('K0')
       publish('plant/furnace/set/setpoint', '900')
       const outcome = await hear('plant/furnace/outcome/setpoint', it => it.outcome === 'refused')

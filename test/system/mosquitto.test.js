@@ -77,8 +77,8 @@ for (const { name, red, node } of RUNTIMES) {
         await hear(`plant/${topic}`, it => it.quality === 'good')
       }
       for (const zone of ['zone1', 'zone2']) {
-        for (const [name, unit] of Object.entries({ temperature: '°C', load_current: 'A', load_power: 'kW' }))
-          await hear(`plant/${zone}/${name}`, it => it.quality === 'good' && it.unit === unit && it.value > 0)
+        for (const [key, unit] of Object.entries({ temperature: '°C', load_current: 'A', load_power: 'kW' }))
+          await hear(`plant/${zone}/${key}`, it => it.quality === 'good' && it.unit === unit && it.value > 0)
       }
     })
 

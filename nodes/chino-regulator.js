@@ -17,7 +17,9 @@ const checkBroadcast = ({ settings: { mode, verify }, device: { station } }) => 
 /** In a node that also reads, a faulty tag table stops the writing only. */
 const writingBesideReading = session => {
   const { tagFault } = session.deviceNode
-  return tagFault ? () => Promise.reject(tagFault) : startWriting(session, { output: 1 })
+  if (!tagFault) return startWriting(session, { output: 1 })
+  session.warn(tagFault)
+  return () => Promise.reject(tagFault)
 }
 
 const asks = msg => Object.hasOwn(msg, 'items')

@@ -18,9 +18,9 @@ const newPlc = (station, { areas, clock }) => {
 /** Programs and kernels make pauses inside a frame that are none on a wire; ASCII allows a second. */
 const pauses = ({ protocol }) => (protocol === 'rtu' ? { gap: 25 } : {})
 
-const newStation = (station, { settings, clock }) =>
+const newStation = (station, { settings, clock, baudRate }) =>
   settings.type === 'chino-config'
-    ? createChinoRegulator({ station, protocol: settings.protocol, clock, ...pauses(settings) })
+    ? createChinoRegulator({ station, protocol: settings.protocol, clock, baudRate, ...pauses(settings) })
     : newPlc(station, { areas: settings.areas, clock })
 
 /** What a station is: with another device, or another protocol, it is another one. */
@@ -41,7 +41,7 @@ const simulatedWire = ({ baudRate }) => {
   const place = settings => {
     const number = numberOf(settings.station)
     wire.remove(number)
-    wire.add(newStation(number, { settings, clock }))
+    wire.add(newStation(number, { settings, clock, baudRate }))
     makes.set(number, makeOf(settings))
   }
   return {

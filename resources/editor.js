@@ -2163,7 +2163,7 @@ var nxlineSerialPlc = (() => {
         return range(from, parseOne(last, clean, addressMode), { clean, addressMode });
       }
       function range(from, to, { clean, addressMode }) {
-        if (from.row !== to.row) throw bad(clean, `one end is a ${from.row.name}, the other a ${to.row.name}`);
+        if (from.row !== to.row) throw bad(clean, `one end is of the ${from.row.name}s, the other of the ${to.row.name}s`);
         if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a register");
         if (from.style !== to.style) throw bad(clean, "both ends must be written in the same way");
         const count = to.address - from.address + 1;

@@ -1,7 +1,7 @@
 'use strict'
 const path = require('node:path')
 const helper = require('node-red-node-test-helper')
-const { createNxLine, serveOnTcp } = require('../../lib/sim')
+const { createLine, createNxLine, serveOnTcp } = require('../../lib/sim')
 const { TYPES, translator } = require('./dialogs')
 
 /** Flows in Node-RED's test helper, on a simulator behind TCP whose memory and faults the test holds in its hands. */
@@ -32,9 +32,18 @@ const until = async (check, what = 'something', patience = 4000) => {
   }
 }
 
+const QUICK = { quiet: true, baudRate: 115200, turnaround: 1 }
+
 /** A simulated line behind TCP. `quiet`: nothing moves by itself. */
 const openWire = async (settings = {}) => {
-  const line = createNxLine({ quiet: true, baudRate: 115200, turnaround: 1, ...settings })
+  const line = createNxLine({ ...QUICK, ...settings })
+  const server = await serveOnTcp({ wire: line.wire })
+  return { ...line, ...server }
+}
+
+/** The same with stations of any kind, as `stations`; a number is a regulator. */
+const openMixedWire = async (settings = {}) => {
+  const line = createLine({ ...QUICK, device: 'chino', ...settings })
   const server = await serveOnTcp({ wire: line.wire })
   return { ...line, ...server }
 }
@@ -84,6 +93,26 @@ const writer = (more = {}) => ({
   wires: [['out'], ['failed']],
   ...more
 })
+const zoneNode = (more = {}) => ({
+  id: 'zone',
+  type: 'chino-config',
+  name: 'Zone',
+  line: 'line',
+  station: '1',
+  timeout: '150',
+  attempts: '1',
+  ...more
+})
+/** A chino-regulator; its first wires are those of its mode. */
+const regulator = (more = {}) => ({
+  id: 'regulator',
+  type: 'chino-regulator',
+  ...ON_TAB,
+  regulator: 'zone',
+  interval: '0',
+  wires: more.mode === 'both' ? [['out'], ['written'], ['failed']] : [['out'], ['failed']],
+  ...more
+})
 const probe = id => ({ id, type: 'helper', ...ON_TAB, wires: [] })
 const catcher = { id: 'catch', type: 'catch', ...ON_TAB, scope: null, uncaught: false, wires: [['caught']] }
 
@@ -98,12 +127,13 @@ const collect = id => {
 }
 
 /**
- * Loads a flow with the probes `out`, `failed` and `caught`.
+ * Loads a flow with the probes `out`, `written`, `failed` and `caught`.
  * @param {any[]} nodes
  */
 const load = async nodes => {
-  await helper.load(NODES, [TAB, ...nodes, probe('out'), probe('failed'), catcher, probe('caught')])
-  return { out: collect('out'), failed: collect('failed'), caught: collect('caught') }
+  const probes = ['out', 'written', 'failed', 'caught']
+  await helper.load(NODES, [TAB, ...nodes, catcher, ...probes.map(probe)])
+  return Object.fromEntries(probes.map(id => [id, collect(id)]))
 }
 
 /** Statuses of a node from now on. */
@@ -133,12 +163,15 @@ module.exports = {
   helper,
   lineNode,
   load,
+  openMixedWire,
   openWire,
   plcNode,
   probe,
   reader,
+  regulator,
   statuses,
   tick,
   until,
-  writer
+  writer,
+  zoneNode
 }

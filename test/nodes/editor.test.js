@@ -1,9 +1,13 @@
 'use strict'
 const assert = require('node:assert/strict')
-const { notationWithTags, parseItem } = require('../../scripts/editor/model')
+const { describeAddress } = require('../../lib/codec/modbus/address')
+const { outputRole } = require('../../scripts/editor/flow')
+const { describe: describeItem, notationWithTags, parseItem } = require('../../scripts/editor/model')
 const { areaFault } = require('../../scripts/editor/areas')
 const { merged } = require('../../scripts/editor/table')
+const { doubtOf, missingRows } = require('../../scripts/editor/tags')
 const { offersFor } = require('../../scripts/editor/widgets')
+const { translator } = require('./dialogs')
 
 /** What the dialogs decide without a page. */
 
@@ -101,5 +105,87 @@ describe('items in the dialogs of the flow', () => {
   it('no PLC, no table', () => {
     assert.equal(notationWithTags(null).tags.size, 0)
     assert.equal(notationWithTags({ tags: 'x', areas: 7 }).tags.size, 0)
+  })
+})
+
+describe('what goes out for an address of a regulator', () => {
+  const chino = more => ({ type: 'chino-config', addressMode: '1-base', ...more })
+  const inLanguage = (language, run) => {
+    const before = globalThis.RED
+    globalThis.RED = { _: translator(language) }
+    try {
+      return run()
+    } finally {
+      globalThis.RED = before
+    }
+  }
+  const said = (text, { language = 'en-US', write, ...more } = {}) =>
+    inLanguage(language, () => describeItem(parseItem(text, notationWithTags(chino(more))), chino(more), { write }))
+
+  for (const [text, options, expected] of [
+    ['400108', {}, 'function 03, wire address 107 (006Bh)'],
+    ['400107', { addressMode: '0-base' }, 'function 03, wire address 107 (006Bh)'],
+    ['hr107', { addressMode: '0-base' }, 'function 03, wire address 107 (006Bh)'],
+    ['40108..40111', {}, 'function 03, wire addresses 107–110 (006Bh–006Eh)'],
+    ['400108:float32', {}, 'function 03, wire addresses 107–108 (006Bh–006Ch)'],
+    ['300009', {}, 'function 04, wire address 8 (0008h)'],
+    ['010197', {}, 'function 01, wire address 10196 (27D4h)'],
+    ['110197', {}, 'function 02, wire address 10196 (27D4h)'],
+    ['401001.15', {}, 'function 03, wire address 1000 (03E8h), bit 15'],
+    ['001001:uint16', {}, 'function 01, wire addresses 1000–1015 (03E8h–03F7h)'],
+    ['001001:uint32', { write: true }, 'function 0F, wire addresses 1000–1031 (03E8h–0407h)'],
+    ['400108', { write: true }, 'function 10, wire address 107 (006Bh)'],
+    ['400108', { write: true, holdingFunction: '06' }, 'function 06, wire address 107 (006Bh)'],
+    ['400108', { write: true, holdingFunction: 'auto' }, 'function 06, wire address 107 (006Bh)'],
+    ['400108:uint32', { write: true, holdingFunction: 'auto' }, 'function 10, wire addresses 107–108 (006Bh–006Ch)'],
+    ['co19', { write: true, coilFunction: '05' }, 'function 05, wire address 19 (0013h)'],
+    ['co19..co20', { write: true, coilFunction: 'auto' }, 'function 0F, wire addresses 19–20 (0013h–0014h)'],
+    ['401001.15', { write: true }, 'functions 03 and 10, read-modify-write of wire address 1000 (03E8h)']
+  ]) {
+    it(`${text} ${JSON.stringify(options)}: ${expected}`, () => {
+      assert.equal(said(text, options), expected)
+      const { addressText } = parseItem(text, notationWithTags(chino(options)))
+      const place = notationWithTags(chino(options)).parse(addressText)
+      // without a type the library says the same
+      if (!text.includes(':')) assert.equal(describeAddress(place, options), expected)
+    })
+  }
+
+  it('in Korean', () => {
+    assert.equal(said('400108', { language: 'ko' }), '기능 코드 03, 통신 주소 107 (006Bh)')
+  })
+
+  it('the tags of a regulator are known by their names, faulty ones left out', () => {
+    const tags = [
+      { name: 'empty', address: '' },
+      { name: 'current', address: '300003' }
+    ]
+    assert.deepEqual([...notationWithTags({ type: 'chino-config', tags }).tags.keys()], ['current'])
+  })
+
+  it('the template adds only the rows that are not there, without an address', () =>
+    inLanguage('en-US', () => {
+      const rows = missingRows([{ name: 'gradient', address: '400002' }])
+      assert.deepEqual(
+        rows.map(({ name }) => name),
+        ['manual_output', 'elevation', 'load_voltage', 'load_current', 'load_power', 'load_resistance', 'alarm']
+      )
+      assert.ok(rows.every(({ address, label }) => address === '' && /^[A-Z]/.test(label)))
+    }))
+
+  it('the import says what a spreadsheet may have eaten', () =>
+    inLanguage('en-US', () => {
+      const notation = notationWithTags({ type: 'chino-config' })
+      assert.match(doubtOf([{ name: 'run', address: '10197' }], notation), /run: 10197 may have been 010197/)
+      assert.equal(doubtOf([{ name: 'run', address: '010197' }], notation), '')
+      assert.equal(doubtOf([{ name: 'm', address: 'M10' }], notationWithTags({ type: 'nx-config' })), '')
+    }))
+
+  it('each output of each mode has its role', () => {
+    const roles = mode => [0, 1, 2].map(index => outputRole(mode, index))
+    assert.deepEqual(roles('read'), ['values', undefined, undefined])
+    assert.deepEqual(roles('write'), ['confirmed', 'failed', undefined])
+    assert.deepEqual(roles('both'), ['values', 'confirmed', 'failed'])
+    assert.deepEqual(roles('${MODE}'), roles('read'))
   })
 })

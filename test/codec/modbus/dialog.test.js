@@ -104,8 +104,8 @@ describe('MODBUS conversation: reads are repeated', () => {
 })
 
 describe('MODBUS conversation: the bytes may be made by another', () => {
-  const made = (send, answer) => (query, station) => ({
-    send: send ?? rtu('11 03 00 6B 00 03'),
+  const made = (bytes, answer) => (query, station) => ({
+    send: bytes ?? rtu('11 03 00 6B 00 03'),
     read: () => answer(query, station)
   })
 
@@ -412,6 +412,7 @@ describe('MODBUS conversation: broadcast', () => {
 
 describe('MODBUS conversation: refused before anything is sent', () => {
   it('stations and functions', () => {
+    for (const station of [1, 247]) assert.equal(readDialog(WORDS, { station }).next().value.send[0], station)
     for (const station of [-1, 248, 255, 1.5, '1', undefined]) {
       refused(() => readDialog(WORDS, { station }).next(), 'BAD_STATION')
       refused(() => writeDialog({ frames: [WRITE] }, { station }).next(), 'BAD_STATION')

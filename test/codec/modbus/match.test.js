@@ -190,12 +190,23 @@ describe('MODBUS match: never a frame out of the middle of another', () => {
     assert.deepEqual(match(many)(damaged), { bad: 'CRC', length: outer.length })
   })
 
+  it('nor from its very end', () => {
+    const damaged = Buffer.concat([hex('11 03 10'), Buffer.alloc(13), inner])
+    assert.deepEqual(match(many)(damaged), { bad: 'CRC', length: damaged.length })
+  })
+
+  it('what begins behind a damaged one, or a stranger, is waited for', () => {
+    assert.deepEqual(match()(Buffer.concat([hex('11 03 06'), R.subarray(0, 9)])), { need: 14, ours: true })
+    assert.deepEqual(match()(Buffer.concat([hex('11 04 06'), R.subarray(0, 9)])), { skip: 3 })
+  })
+
   it('nor out of an answer of this station to something else, whole, in pieces or damaged', () => {
     const inside = [...R, 0]
     const others = [
       framed('rtu', [17, 3, 12, ...inside]),
       framed('rtu', [17, 4, 12, ...inside]),
-      framed('rtu', [17, 1, 12, ...inside])
+      framed('rtu', [17, 1, 12, ...inside]),
+      framed('rtu', [17, 2, 250, ...inside, ...new Array(238).fill(0)])
     ]
     for (const bytes of others) {
       for (let at = 1; at <= bytes.length; at++) {
@@ -210,6 +221,7 @@ describe('MODBUS match: never a frame out of the middle of another', () => {
 
   it('nor out of an answer of another station', () => {
     const foreign = framed('rtu', [12, 3, 12, ...R, 0])
+    assert.equal(taken(foreign), undefined)
     const got = receive(match(), [Buffer.concat([foreign, R])])
     assert.deepEqual([got.take, got.skipped], [R, foreign.length])
   })
@@ -235,6 +247,13 @@ describe('MODBUS match: our own echo', () => {
     if (query.fn === 5 || query.fn === 6) {
       it(`${name}: cannot be told from the answer; the line takes it away`, () => {
         assert.deepEqual(taken(r, query, { protocol, sent: q }), r)
+        const checksum = protocol === 'rtu' ? 6 : 13
+        for (let bit = checksum * 8; bit < r.length * 8; bit++) {
+          const turned = Buffer.from(r)
+          turned[bit >> 3] ^= 1 << (bit & 7)
+          if (!turned.subarray(1).includes(0x3a))
+            assert.ok(receive(match(query, { protocol, sent: q }), [turned]).bad, `bit ${bit}`)
+        }
       })
       continue
     }
@@ -270,6 +289,38 @@ describe('MODBUS match: our own echo', () => {
         assert.deepEqual(receive(look, bytesOf(alike)).take, alike, `${protocol} ${data}`)
       }
     }
+  })
+})
+
+describe('MODBUS match: chance', () => {
+  it('an exception whose bytes are those of the request, but for its function', () => {
+    let found = 0
+    for (let station = 1; station <= 247; station++) {
+      for (let number = 1; number <= 11; number++) {
+        const bytes = framed('rtu', [station, 0x83, number])
+        if (bytes[4] !== 0) continue
+        found++
+        const query = { fn: 3, base: number * 256 + bytes[3], count: 3 }
+        const sent = framed('rtu', [station, 3, number, bytes[3], 0, 3])
+        const look = answerTo(query, { station, sent })
+        assert.deepEqual(look(bytes), { take: 5 })
+        assert.deepEqual(look(bytes.subarray(0, 4)), { need: 5, ours: true })
+        assert.deepEqual(receive(look, [sent, bytes]).take, bytes)
+      }
+    }
+    assert.ok(found > 0)
+  })
+
+  it('an acknowledgement that the request begins with, by its checksum', () => {
+    for (let base = 0; base < 0x10000; base++) {
+      const ack = framed('rtu', [17, 16, base >> 8, base & 255, 0, 2])
+      if (ack[6] !== 4) continue
+      const query = { fn: 16, base, values: [ack[7] * 256, 1] }
+      const look = match(query, { sent: framed('rtu', [...ack.subarray(0, 6), 4, ack[7], 0, 0, 1]) })
+      for (let at = 6; at < 8; at++) assert.deepEqual(look(ack.subarray(0, at)), { need: 8, ours: true })
+      return assert.deepEqual(look(ack), { take: 8 })
+    }
+    assert.fail('there is none')
   })
 })
 

@@ -461,7 +461,10 @@ describe('MODBUS match: bounded', () => {
     ]
     for (const protocol of PROTOCOLS) {
       for (const [at, flood] of floods.entries()) {
-        const ratio = growth(size => receive(match(WORDS, { protocol, sent: R }), [flood(size)]), 2048)
+        // a busy machine may spoil one measurement, not three
+        const measure = () => growth(size => receive(match(WORDS, { protocol, sent: R }), [flood(size)]), 2048)
+        let ratio = measure()
+        for (let again = 0; again < 2 && ratio >= 10; again++) ratio = Math.min(ratio, measure())
         assert.ok(ratio < 10, `${protocol} ${at}: four times the bytes take ${ratio.toFixed(1)} times as long`)
       }
     }

@@ -8,10 +8,11 @@ const { applyFault } = require('./faults')
  * One half-duplex line with several stations and one or more masters. Every byte takes its time on the wire, in both directions;
  * everybody hears everybody; two who send at once spoil each other's bytes.
  *
- * @param {{ clock: any, baudRate?: number, bitsPerByte?: number, echo?: boolean, collisions?: boolean, chunk?: number | (() => number),
+ * @param {{ clock: any, baudRate?: number, bitsPerByte?: number, echo?: boolean, collisions?: boolean | 'seen', chunk?: number | (() => number),
  *   faults?: import('./faults').Faults | null, random?: import('./random').Random }} options
  *   echo: a master hears itself (2-wire adapter) · chunk: bytes that arrive at once (16, as from a UART), or a function ·
- *   collisions: two who send at once spoil both (default); false: the second one waits until the line is free
+ *   collisions: two who send at once spoil both at random (default) · `seen`: in a way that no check code misses · false: the second one
+ *   waits until the line is free
  * @returns {Wire}
  */
 function createWire(options) {
@@ -122,7 +123,7 @@ function transmit(wire, from, { bytes, at }) {
   if (bytes.length === 0) return
   const start = Math.max(at, from.busyUntil, wire.collisions ? 0 : idleAt(wire))
   const end = start + bytes.length * wire.byteMs
-  const sending = { from, bytes: Buffer.from(bytes), start, end, told: 0 }
+  const sending = { from, bytes: Buffer.from(bytes), sent: bytes, start, end, told: 0 }
   from.busyUntil = end
   wire.counts.frames++
   wire.counts.bytes += bytes.length
@@ -141,10 +142,14 @@ function collide(wire, sending) {
   }
 }
 
-function spoil({ byteMs, random }, victim, { start, end }) {
+function spoil({ byteMs, random, collisions }, victim, { start, end }) {
   const first = Math.max(victim.told, Math.floor((start - victim.start) / byteMs))
   const last = Math.min(victim.bytes.length, Math.ceil((end - victim.start) / byteMs))
-  for (let n = first; n < last; n++) victim.bytes[n] ^= random.integer(1, 255)
+  for (let n = first; n < last; n++) {
+    // the highest bits alone of bytes in a row: no multiple of the CRC's polynomial, and no digit of ASCII
+    if (collisions === 'seen') victim.bytes[n] = victim.sent[n] ^ 0x80
+    else victim.bytes[n] ^= random.integer(1, 255)
+  }
 }
 
 function schedule(wire, sending) {

@@ -22,7 +22,11 @@ const bits = Array.from({ length: 8 }, (_, n) => [
 ]).flat()
 const LIVE = [...words, ...bits]
 
-const RANGES = [`hr${SET}..hr${SET + 127}`, `hr${BITS}..hr${BITS + MANY - 1}`, `co${SWITCHES}..co${SWITCHES + MANY - 1}`]
+const RANGES = [
+  `hr${SET}..hr${SET + 127}`,
+  `hr${BITS}..hr${BITS + MANY - 1}`,
+  `co${SWITCHES}..co${SWITCHES + MANY - 1}`
+]
 
 const createDevice = ({ protocol, settings }, common) =>
   createChinoRegulator({ ...common, protocol, ...settings, writableRanges: RANGES })
@@ -69,7 +73,8 @@ const rangeOf = (table, number, count) =>
 function newEntry({ serial, random }, number) {
   const fresh = serial()
   const kind = random.next()
-  if (kind < 0.5) return { item: `hr${SET + number}`, value: fresh & 0xffff, key: `hr${SET + number}:${fresh & 0xffff}` }
+  if (kind < 0.5)
+    return { item: `hr${SET + number}`, value: fresh & 0xffff, key: `hr${SET + number}:${fresh & 0xffff}` }
   const place = fresh % MANY
   if (kind < 0.75) return { item: `co${SWITCHES + place}`, value: true, key: `co${SWITCHES + place}` }
   return { item: `hr${BITS + place}.${two(random.integer(0, 15))}`, value: true, key: `hr${BITS + place}` }

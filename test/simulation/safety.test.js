@@ -2,9 +2,10 @@
 
 const assert = require('node:assert')
 const { freshSeed } = require('../../lib/sim')
-const { safetyRun } = require('./run')
+const { FAULTS, PATIENCE, safetyRun } = require('./run')
+const { mixed, regulators } = require('./workload')
 
-/** The five claims of a run; its report with the seed is the evidence. */
+/** The claims of a run; its report with the seed is the evidence. */
 function assertSafe(report) {
   const evidence = () => `seed ${report.seed}: ${JSON.stringify(report, null, 1).slice(0, 4000)}`
   assert.deepStrictEqual(report.wrong, [], evidence())
@@ -13,6 +14,13 @@ function assertSafe(report) {
   assert.strictEqual(report.settled, report.asked, evidence())
   assert.deepStrictEqual([report.open, report.timers], [0, 0], evidence())
   assert.deepStrictEqual(report.rejected, {}, evidence())
+}
+
+/** Liveness: within the longest back-off, dark station and bound of lateness all is well again, and stays so. */
+function assertRecovered(report) {
+  const evidence = `seed ${report.seed}: ${JSON.stringify(report, null, 1).slice(0, 4000)}`
+  assert.ok(report.recovered < PATIENCE, evidence)
+  assert.strictEqual(report.relapses, 0, evidence)
 }
 
 /** A run that meets no fault and delivers nothing would be safe, too. */
@@ -37,6 +45,7 @@ describe('safety: any faults, up to 30 % of all answers', function () {
       const report = await safetyRun({ exchanges: 4000, ...Object(options) })
       assertSafe(report)
       assertBusy(report, 4000)
+      assertRecovered(report)
     })
   }
 
@@ -44,6 +53,7 @@ describe('safety: any faults, up to 30 % of all answers', function () {
   it(`a fresh seed: ${seed}`, async () => {
     const report = await safetyRun({ seed, exchanges: 3000, collisions: false })
     assertSafe(report)
+    assertRecovered(report)
   })
 
   it('is replayed exactly by its seed', async () => {
@@ -58,6 +68,75 @@ describe('safety: any faults, up to 30 % of all answers', function () {
     const { bad, outcomes } = report
     assert.deepStrictEqual([bad, outcomes.unknown, outcomes.refused, outcomes.failed], [0, 0, 0, 0])
     assert.ok(outcomes.confirmed > 100)
+  })
+})
+
+// LRC: one flipped bit is what it surely sees
+const ONE_BIT = FAULTS.map(fault => (fault.kind === 'crc' ? { ...fault, argument: 1 } : fault))
+const without = (faults, ...kinds) => faults.filter(({ kind }) => !kinds.includes(kind))
+
+describe('safety: regulators, alone and beside NX PLCs', function () {
+  this.timeout(60000)
+  // ASCII: what collides is spoilt so that the LRC sees it
+  const lines = [
+    ['RTU', { stations: regulators('rtu') }],
+    ['ASCII', { stations: regulators('ascii'), faults: ONE_BIT, collisions: 'seen' }],
+    ['NX and RTU', { stations: mixed('rtu') }],
+    ['NX and ASCII', { stations: mixed('ascii'), faults: ONE_BIT, collisions: 'seen' }]
+  ]
+  const cases = [
+    ['seed 21', { seed: 21 }],
+    ['seed 22: the adapter hears itself', { seed: 22, echo: true }]
+  ]
+  for (const [name, line] of lines) {
+    for (const [what, options] of cases) {
+      it(`${name}, ${what}`, async () => {
+        const report = await safetyRun({ exchanges: 2500, ...Object(line), ...Object(options), unplugs: 0.003 })
+        assertSafe(report)
+        assertBusy(report, 1500)
+        assertRecovered(report)
+        assert.ok(report.executed > 200)
+      })
+    }
+
+    // two faults at once are not claimed: the answer that `merged` repeats is taken if another one spoils the right one before it
+    const claimed = without(Object(line).faults ?? FAULTS, 'merged', 'echo')
+    const seed = freshSeed()
+    it(`${name}, a fresh seed: ${seed}`, async () => {
+      const report = await safetyRun({ seed, exchanges: 1500, ...Object(line), faults: claimed, collisions: 'seen' })
+      assertSafe(report)
+      assertRecovered(report)
+    })
+
+    // and nothing collides here
+    const apart = without(Object(line).faults ?? FAULTS, 'late', 'duplicated', 'off')
+    it(`${name}, a fresh seed without late answers: ${seed + 1}`, async () => {
+      assertSafe(await safetyRun({ seed: seed + 1, exchanges: 1000, ...Object(line), faults: apart, unplugs: 0 }))
+    })
+
+    it(`${name}, no faults: every value good, every write confirmed`, async () => {
+      const report = await safetyRun({ ...Object(line), seed: 23, exchanges: 1000, faults: [], unplugs: 0 })
+      assertSafe(report)
+      const { bad, outcomes, relapses } = report
+      assert.deepStrictEqual([bad, outcomes.unknown, outcomes.refused, outcomes.failed, relapses], [0, 0, 0, 0, 0])
+      assert.ok(outcomes.confirmed > 50)
+    })
+  }
+
+  it('is replayed exactly by its seed', async () => {
+    const run = () => safetyRun({ seed: 5, exchanges: 600, stations: mixed('rtu') })
+    assert.deepStrictEqual(await run(), await run())
+  })
+
+  it('a busy or slow device (06, 05): reads are asked again, writes are not', async () => {
+    for (const argument of [5, 6]) {
+      const faults = [{ kind: 'error', rate: 0.3, argument }]
+      const report = await safetyRun({ seed: 24, exchanges: 800, stations: regulators('rtu'), faults, unplugs: 0 })
+      assertSafe(report)
+      const code = argument === 5 ? 'MODBUS_ACKNOWLEDGE' : 'MODBUS_BUSY'
+      assert.deepStrictEqual(Object.keys(report.codes), [code])
+      assert.ok(report.bad < report.good / 4, `${report.bad} of ${report.good}`)
+    }
   })
 })
 
@@ -84,4 +163,21 @@ describe('safety: the run has teeth', function () {
     assertSafe(report)
     assert.ok(report.faults.late > 150)
   })
+
+  // MODBUS has no nonce: silence alone tells a late answer from the awaited one
+  for (const protocol of ['rtu', 'ascii']) {
+    const chino = { ...late, stations: regulators(protocol), faults }
+
+    it(`regulators, ${protocol}: without quarantine late answers are taken, and the run sees it`, async () => {
+      const report = await safetyRun({ ...chino, recovery: false, device: { attempts: 1 }, wire: { latenessBound: 1 } })
+      assert.ok(report.wrong.length > 50, String(report.wrong.length))
+    })
+
+    it(`regulators, ${protocol}: with it they are not`, async () => {
+      const report = await safetyRun({ ...chino, device: { attempts: 1 } })
+      assertSafe(report)
+      assertRecovered(report)
+      assert.ok(report.faults.late > 150)
+    })
+  }
 })

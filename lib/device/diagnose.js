@@ -30,20 +30,7 @@ const ANSWERED = new Set(['NOT_A_VALUE'])
  * All is well: one read. Else it takes the timeout, the bound of lateness (a late answer is listened for), and what is tried, at most
  * `trialTime`. Nothing is ever written. A line that others use is shared with them.
  *
- * @param {object} options all of `lineSettings` (path, or host and port) and of the device (`createNxPlc`, `createChinoRegulator`), and
- * @param {'nx'|'rtu'|'ascii'} options.protocol
- * @param {number|string} options.station
- * @param {string} [options.item] what to read; default the first tag that can be used, else M0, or for MODBUS hr0, whose refusal (exceptions 01
- *   to 03) is an answer, too
- * @param {number} [options.timeout] ms, default 3000 (NX), 1000 (MODBUS)
- * @param {any} [options.lease] of an open line, that stays its owner's; the settings of the line then only fill the sheet
- * @param {any} [options.pool] where the line is opened, default the one of `openNxPlc`
- * @param {boolean} [options.tryOtherModes] ask a silent station by the other mode (RTU, ASCII; 2-step, 4-step) and from all master IDs, too
- * @param {boolean} [options.tryOtherSpeeds] ask a silent station at 1200 to 115200 bit/s and with the other parities, if nobody else uses the line
- * @param {number} [options.trialTime] ms that all this may take, default 20000
- * @param {any} [options.trialPool] where the other speeds are tried, default a new pool
- * @param {any} [options.files] `realpath`, `readFile`: where the latency timer of an FTDI adapter is read
- * @param {any} [options.clock] @param {() => number} [options.random] 0 to 1
+ * @param {Options} options all of `lineSettings` (path, or host and port) and of the device (`createNxPlc`, `createChinoRegulator`), and these
  * @returns {Promise<Diagnosis>}
  * @throws {import('../error').PlcError} (rejects) only for settings that cannot be used: BAD_SETTING, BAD_STATION, BAD_MASTER_ID, BAD_AREA,
  *   BAD_ADDRESS and its like, WIRE_CONFLICT, BROADCAST_REFUSED (station 0 of MODBUS cannot be read)
@@ -184,7 +171,7 @@ function report(test, seen) {
       ...{ station, item: choice.item, goesOut, value, ms: evidence.ms, waited, code: result.code, text: result.text },
       ...{ reached, shared, tried, notTried: notTried(test) },
       sent: evidence.sent.toString('hex'),
-      received: evidence.seen.toString('hex'),
+      received: evidence.received.toString('hex'),
       echo: evidence.echo || test.lease.line.echo === 'present',
       stations: [...new Set(evidence.frames.map(frame => frame.station))],
       lateness: late && Math.round(late.lateness),
@@ -210,6 +197,24 @@ function sheetFacts(test, { ok, answered, found, result, evidence, cause, framin
 }
 
 /**
+ * @typedef {object} OwnOptions
+ * @property {'nx'|'rtu'|'ascii'} protocol
+ * @property {number|string} station
+ * @property {string} [item] what to read; default the first tag that can be used, else M0, or for MODBUS hr0, whose refusal (exceptions 01 to 03)
+ *   is an answer, too
+ * @property {number} [timeout] ms, default 3000 (NX), 1000 (MODBUS)
+ * @property {any} [lease] of an open line, that stays its owner's; the settings of the line then only fill the sheet
+ * @property {any} [pool] where the line is opened, default the one of `openNxPlc`
+ * @property {boolean} [tryOtherModes] ask a silent station by the other mode (RTU, ASCII; 2-step, 4-step) and from all master IDs, too
+ * @property {boolean} [tryOtherSpeeds] ask a silent station at 1200 to 115200 bit/s and with the other parities, if nobody else uses the line
+ * @property {number} [trialTime] ms that all this may take, default 20000
+ * @property {any} [trialPool] where the other speeds are tried, default a new pool
+ * @property {any} [files] `realpath`, `readFile`: where the latency timer of an FTDI adapter is read
+ * @property {any} [clock]
+ * @property {() => number} [random] 0 to 1
+ *
+ * @typedef {OwnOptions & Record<string, any>} Options
+ *
  * @typedef {object} Diagnosis
  * @property {boolean} ok the station answers with these settings
  * @property {import('./diagnosis/causes').Cause | null} cause the likely one; null if ok

@@ -6,6 +6,7 @@ import {
   createChinoRegulator,
   createNxPlc,
   createPool,
+  diagnose,
   listPorts,
   messagesOf,
   mixedConflict,
@@ -83,6 +84,19 @@ export async function mixed(): Promise<string> {
   return reason
 }
 
+export async function why(): Promise<string> {
+  const { ok, cause, seen, rows } = await diagnose({
+    path: '/dev/ttyUSB0',
+    protocol: 'rtu',
+    station: 11,
+    parity: 'even'
+  })
+  const wrong: string[] = rows.filter(({ result }) => result === 'ng').map(({ item, text }) => `${item}: ${text}`)
+  return ok || !cause ? String(seen.value) : [cause.code, cause.text, cause.remedy, ...wrong].join('. ')
+}
+
+// @ts-expect-error there is no such protocol
+diagnose({ path: '/dev/ttyUSB0', station: 11, protocol: 'modbus' })
 // @ts-expect-error there is no such protocol
 createChinoRegulator({ lease: null, station: 1, protocol: 'tcp' })
 // @ts-expect-error a station is needed

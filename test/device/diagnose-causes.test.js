@@ -119,6 +119,28 @@ describe('diagnose: the likely cause, by the bytes that were seen', () => {
     await clock.run(lease.release())
   })
 
+  for (const [what, options, answer] of /** @type {any[]} */ ([
+    ['RTU', RTU, () => VALUE_RTU],
+    ['NX', NX, query => nx(query[1], 1, 0xa3, 5, 0)]
+  ])) {
+    it(`${what}: a station that answers others on this line, and not this query, is unsteady`, async () => {
+      const { createChinoRegulator, createNxPlc } = require('../../lib')
+      // words are answered, the bit that is asked for is not
+      const isWord = query => (what === 'NX' ? query[2] === 0x23 : query[1] === 3)
+      const poll = (query, { reply }) => isWord(query) && reply(answer(query), { after: 30 })
+      const { pool, base, clock, run } = bench(poll, options)
+      const lease = pool.open({ transport: 'serial', path: base.path }, { id: 'a', name: 'a' })
+      const poller = (what === 'NX' ? createNxPlc : createChinoRegulator)({ ...options, lease, clock })
+      poller.subscribe({ items: [what === 'NX' ? 'M5' : 'hr5'], interval: 20 }, () => {})
+      // one of the polls is on its way now
+      await clock.advance(1300)
+      const { cause, seen } = await run({ item: what === 'NX' ? 'M0.0' : 'co0' })
+      poller.close()
+      assert.deepEqual([seen.code, cause.code], ['TIMEOUT', 'UNSTEADY'])
+      await clock.run(lease.release())
+    })
+  }
+
   it('characters of 7 bits with parity, read as 8: ASCII, with what it is', async () => {
     const even = byte => byte | ((byte.toString(2).replaceAll('0', '').length % 2) << 7)
     const { run, end } = bench(says(Buffer.from(ascii(0x11, 3, 2, 0, 7).map(even))), ASCII)

@@ -17,7 +17,7 @@ const { CODES, isRefusal } = require('../../error')
  * @property {string} transport @property {string} path of the port, or host:port
  * @property {string} framing `19200 8N1`
  * @property {number} waited ms that was listened in all
- * @property {{ seen: Buffer, sent: Buffer, echo: boolean, frames: any[] }} evidence
+ * @property {import('./evidence').Evidence} evidence
  * @property {{ lateness: number, timeout: number } | null} late
  */
 
@@ -89,7 +89,7 @@ const CAUSES = Object.freeze({
     ['otherSettings']
   ],
   UNSTEADY: [
-    'station {station} answered a repeat of the query, but not the first one',
+    'station {station} answered one query, and not another one',
     'The settings are right. Check cable, earth and terminators, and whether another master uses the line.',
     ['cable']
   ],
@@ -162,15 +162,14 @@ const addressHint = ({ protocol, addressMode, item }) => {
 /** A whole frame was heard that is not the answer: who speaks? @param {Facts} facts @returns {Cause | null} */
 function fromFrames(facts) {
   const { protocol, station, evidence } = facts
-  const { frames, sent } = evidence
+  const { frames, queries } = evidence
   const same = frames.filter(frame => frame.protocol === protocol && !frame.dataBits)
   const answers = same.filter(({ query }) => !query)
-  const master = protocol === 'nx' ? sent[1] : undefined
-  const toUs = answers.filter(({ to }) => to === master)
+  const toUs = answers.filter(({ to }) => to === undefined || queries.some(query => query[1] === to))
   const isOurs = frame => frame.station === station || (protocol === 'nx' && station === ANY_STATION)
   const other = toUs.find(frame => !isOurs(frame))
   if (toUs.some(isOurs)) {
-    return cause('UNEXPECTED', { ...facts, bytes: shownBytes(evidence.seen) })
+    return cause('UNEXPECTED', { ...facts, bytes: shownBytes(evidence.stray) })
   }
   if (same.length > toUs.length) return cause('OTHER_MASTER', facts)
   if (other) return cause('OTHER_STATION', { ...facts, other: other.station })
@@ -194,7 +193,7 @@ function stranger(facts, frame) {
 /** @param {Facts} facts @returns {Cause} */
 function fromLoss(facts) {
   const { code, text, evidence, late, transport } = facts
-  const { seen, echo } = evidence
+  const { stray, echo, answers } = evidence
   if (late) {
     const lateness = Math.round(late.lateness)
     const advice = Math.ceil(((facts.timeout + lateness) * 1.5) / 100) * 100
@@ -204,7 +203,9 @@ function fromLoss(facts) {
   if (spoken) return spoken
   // the head was the awaited one: speed and parity are right
   if (code === 'INCOMPLETE' || code === 'CRC_ERROR') return ownCause(code, text)
-  if (seen.length > 0) return cause('GARBAGE', { ...facts, count: seen.length, bytes: shownBytes(seen) })
+  // others who ask the same station on this line are answered
+  if (answers > 0) return cause('UNSTEADY', facts)
+  if (stray.length > 0) return cause('GARBAGE', { ...facts, count: stray.length, bytes: shownBytes(stray) })
   const hint = silenceHint(facts)
   if (echo) return cause('ECHO_ONLY', { ...facts, hint })
   return cause(transport === 'tcp' ? 'SERVER_SILENT' : 'NO_BYTES', { ...facts, hint })

@@ -2,6 +2,22 @@
 const { findFrames } = require('./frames')
 
 const EMPTY = Buffer.alloc(0)
+/** More than this of a flood says nothing more. */
+const MOST_BYTES = 2000
+
+/**
+ * What was seen on the wire while a station was asked.
+ * @typedef {object} Evidence
+ * @property {Buffer} sent the last query
+ * @property {Buffer[]} queries all of them, also those of others who ask this station on the same line
+ * @property {Buffer} received all that came and is not our own echo
+ * @property {Buffer} stray what of it was no answer
+ * @property {import('./frames').Found[]} frames in `stray`
+ * @property {boolean} echo our own query came back
+ * @property {number} answers of the station, whoever asked
+ * @property {number} sentAt when the last query went out, epoch ms; 0: nothing was sent
+ * @property {number} ms from the last query out to the last frame in
+ */
 
 /** All places of `part` taken out of `bytes`. @returns {{ rest: Buffer, found: number }} */
 function without(bytes, part) {
@@ -14,38 +30,44 @@ function without(bytes, part) {
   return { rest, found }
 }
 
-/**
- * What was seen on the wire while a station was asked: out of the trace of the line. What came while another station was asked is that one's.
- *
- * @param {{ t: number, dir: string, station: any, bytes: string, note: string }[]} rows of `line.trace()`
- * @param {{ station: any, since: number, expected: 'nx'|'rtu'|'ascii' }} options since: epoch ms
- * @returns {{ sent: Buffer, seen: Buffer, echo: boolean, frames: import('./frames').Found[], sentAt: number, ms: number }}
- *   sent: the last query, sentAt: when (epoch ms; 0: nothing was sent); seen: all that came and is not our own echo; ms: from the last query out to the last frame in
- */
-function evidenceOf(rows, { station, since, expected }) {
+const bytesOf = row => Buffer.from(row.bytes, 'hex')
+const joined = rows => Buffer.concat(rows.map(bytesOf)).subarray(0, MOST_BYTES)
+const isIn = ({ dir }) => dir === 'in'
+
+/** Rows from a time on that belong to a station: what came while another one was asked is that one's. */
+function rowsOf(rows, station, since) {
   let mine = false
-  let sent = EMPTY
-  let echo = false
-  const times = { out: 0, in: 0 }
-  const pieces = []
-  for (const row of rows.filter(({ t }) => t >= since)) {
+  return rows.filter(row => {
+    if (row.t < since) return false
     if (row.dir === 'out') mine = row.station === station
-    if (!mine && row.station !== station) continue
-    if (row.dir === 'out') sent = Buffer.from(row.bytes, 'hex')
-    if (row.station === station) times[row.dir] = row.t
-    if (row.dir === 'out') continue
-    if (row.note === 'echo') echo = true
-    else pieces.push(Buffer.from(row.bytes, 'hex'))
-  }
+    return mine || row.station === station
+  })
+}
+
+/**
+ * @param {{ t: number, dir: string, station: any, bytes: string, note: string }[]} trace `line.trace()`
+ * @param {{ station: any, since: number, expected: 'nx'|'rtu'|'ascii' }} options since: epoch ms
+ * @returns {Evidence}
+ */
+function evidenceOf(trace, { station, since, expected }) {
+  const rows = rowsOf(trace, station, since)
+  const out = rows.filter(row => !isIn(row))
+  const heard = rows.filter(row => isIn(row) && row.note !== 'echo')
+  const sent = out.length > 0 ? bytesOf(out[out.length - 1]) : EMPTY
   // where the line was told that there is no echo, it comes as bytes of nobody
-  const { rest, found } = without(Buffer.concat(pieces), sent)
+  const { rest: stray, found } = without(joined(heard.filter(({ note }) => note !== '')), sent)
+  const sentAt = out.length > 0 ? out[out.length - 1].t : 0
+  const lastIn = rows.findLast(row => isIn(row) && row.station === station)?.t ?? 0
   return {
     sent,
-    seen: rest,
-    echo: echo || found > 0,
-    frames: findFrames(rest, expected),
-    sentAt: times.out,
-    ms: Math.max(0, Math.round(times.in - times.out))
+    stray,
+    sentAt,
+    queries: out.map(bytesOf),
+    received: without(joined(heard), sent).rest,
+    frames: findFrames(stray, expected),
+    echo: found > 0 || rows.some(({ note }) => note === 'echo'),
+    answers: heard.filter(({ note }) => note === '').length,
+    ms: Math.max(0, Math.round(lastIn - sentAt))
   }
 }
 

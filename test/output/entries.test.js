@@ -53,6 +53,13 @@ describe('what a message writes', () => {
     it(`refuses number ${at}: ${expected}`, () => assert.throws(() => entriesOf(msg), code(expected)))
   })
 
+  it('an address that came as a number has lost its zeros: write it in quotes', () => {
+    const hinted = error => /the number 400108; write the address in quotes/.test(error.message)
+    assert.throws(() => entriesOf({ payload: 5, topic: 400108 }), hinted)
+    assert.throws(() => itemsOf(['400001', 400108]), hinted)
+    assert.throws(() => itemsOf(['400001', {}]), /number 2 is no text/)
+  })
+
   it('takes own properties only; a hostile key is a name like any other', () => {
     const payload = JSON.parse('{"__proto__": 5, "constructor": 6}')
     assert.deepEqual(entriesOf({ payload }), [

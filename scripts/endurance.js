@@ -3,6 +3,7 @@
 /**
  * Long runs that are not part of every test run.
  *   npm run endurance -- redeploys [1000]    so many redeploys and reconnects in a real Node-RED; nothing may be left behind
+ *   npm run endurance -- mixed [600]         so many seconds of an NX PLC and three regulators on one paced line; no value may be wrong
  */
 
 const path = require('node:path')
@@ -10,12 +11,16 @@ const path = require('node:path')
 const support = path.join(__dirname, '..', 'test', 'support')
 const print = text => process.stdout.write(`${text}\n`)
 
+const whole = (text, what) => {
+  const number = Number(text)
+  if (!Number.isInteger(number) || number < 1) throw new Error(`the number of ${what} must be a whole one, 1 or more`)
+  return number
+}
+
 const RUNS = {
   /** @param {string} [count] */
   async redeploys(count = '1000') {
-    const rounds = Number(count)
-    if (!Number.isInteger(rounds) || rounds < 1)
-      throw new Error('the number of redeploys must be a whole one, 1 or more')
+    const rounds = whole(count, 'redeploys')
     const { before, after, ...done } = await require(path.join(support, 'redeploys.js')).redeploys({
       rounds,
       tell: print
@@ -24,6 +29,19 @@ const RUNS = {
     print(`before: ${JSON.stringify(before.resources)}, ${before.descriptors.length} descriptors`)
     print(`after:  ${JSON.stringify(after.resources)}, ${after.descriptors.length} descriptors`)
     print('nothing was left behind')
+  },
+
+  /** @param {string} [count] */
+  async mixed(count = '600') {
+    const seconds = whole(count, 'seconds')
+    const run = await require(path.join(support, 'mixed-line.js')).mixedLine({ seconds })
+    const { wrong, failures, polls, stats, ...done } = run
+    print(JSON.stringify(done))
+    for (const poll of polls) print(JSON.stringify(poll))
+    print(JSON.stringify(stats))
+    for (const each of [...wrong, ...failures].slice(0, 20)) print(JSON.stringify(each))
+    if (wrong.length || failures.length) throw new Error(`${wrong.length} wrong values, ${failures.length} failures`)
+    print('no value was wrong, nothing failed')
   }
 }
 

@@ -4,12 +4,8 @@
  * M0..M127 over a virtual serial port whose other end keeps the pace of 38400 bit/s, in a process of its own.
  * Limit: the bytes' own time on the wire, the station's turnaround and the gaps that the manual asks for.
  */
-const { spawn } = require('node:child_process')
-const { once } = require('node:events')
-const { mkdtempSync, rmSync } = require('node:fs')
-const os = require('node:os')
-const path = require('node:path')
 const { openNxPlc } = require('../../lib')
+const { startFarEnd } = require('../far-end')
 
 const BAUD = 38400
 const TURNAROUND = 5
@@ -26,19 +22,6 @@ const ms = bytes => (bytes * 10 * 1000) / BAUD
 const LIMITS = {
   2: ms(QUERY + ANSWER) + TURNAROUND + GAP_BEFORE_QUERY,
   4: ms(QUERY + SHORT + SHORT + ANSWER) + 2 * TURNAROUND + GAP_BEFORE_QUERY + GAP_BEFORE_RR
-}
-
-async function simulator(link) {
-  const script = path.join(__dirname, '../../scripts/simulate.js')
-  const options = ['--stations', '1', '--baud', `${BAUD}`, '--turnaround', `${TURNAROUND}`, '--seed', '1']
-  const child = spawn(process.execPath, [script, 'nx', '--pty', link, ...options], {
-    stdio: ['ignore', 'pipe', 'inherit']
-  })
-  await Promise.race([
-    once(child.stdout, 'data'),
-    once(child, 'exit').then(() => Promise.reject(new Error('the simulator ended')))
-  ])
-  return child
 }
 
 async function cycle(plc) {
@@ -59,20 +42,17 @@ async function measure(link, steps) {
 }
 
 async function* rows() {
-  const folder = mkdtempSync(path.join(os.tmpdir(), 'bench-'))
-  const child = await simulator(path.join(folder, 'plc'))
+  const far = await startFarEnd({ stations: [1], baudRate: BAUD, turnaround: TURNAROUND })
   try {
     for (const steps of [2, 4]) {
-      const value = await measure(path.join(folder, 'plc'), steps)
+      const value = await measure(far.link, steps)
       const limit = LIMITS[steps]
       const against = `the wire's own ${limit.toFixed(1)} ms`
       const name = `M0..M127 at ${BAUD} bit/s, ${steps}-step`
       yield { name, value, unit: 'ms', against, ratio: value / limit, goal: ['<=', MOST] }
     }
   } finally {
-    child.kill('SIGTERM')
-    await once(child, 'exit')
-    rmSync(folder, { recursive: true, force: true })
+    await far.close()
   }
 }
 

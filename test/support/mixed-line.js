@@ -1,0 +1,194 @@
+'use strict'
+
+/**
+ * An NX PLC and three regulators on one RS-485 line that keeps the pace of its speed, in real time, over a virtual serial port: polled, written to
+ * and asked at once. Every value is compared with what the station held between request and answer.
+ */
+
+const assert = require('node:assert/strict')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+const { createPool, openChinoRegulator, openNxPlc } = require('../../lib')
+const { createLine, createRandom, serveOnPty } = require('../../lib/sim')
+
+const BLOCK = 10
+const CHANGE = 50 // ms between two changes of what a station holds
+const ASK = 170
+const WRITE = 110
+const TURNAROUND = 5
+const SET_POINT_STEPS = 1000
+
+const nx = { device: 'nx', station: 1, block: 'M0..M9', first: 'M', setPoint: 'M10', interval: 250 }
+const chino = (station, interval) => ({
+  device: 'chino',
+  station,
+  block: 'hr100..hr109',
+  first: 'hr10',
+  setPoint: 'hr110',
+  interval
+})
+const STATIONS = [nx, chino(11, 200), chino(12, 250), chino(13, 400)]
+
+/** Ten words that belong together and to one station: no two versions, and no two stations, share them. */
+const wordsOf = (station, version) =>
+  Array.from({ length: BLOCK }, (_, n) => (n === 0 ? version : version * (n + 3) + station * 257 + n) & 0xffff)
+
+/** When a station began to hold a version, and its set point. */
+function createHistory() {
+  const changes = []
+  return {
+    changes,
+    at: (time, value) => void changes.push({ time, value }),
+    /** What was held at any moment between two times. */
+    between: (from, to) =>
+      changes
+        .filter(({ time }, n) => time <= to && (changes[n + 1]?.time ?? Infinity) >= from)
+        .map(({ value }) => value)
+  }
+}
+
+/** The simulated end: it changes what it holds and remembers when. */
+function createFarEnd(baudRate, link) {
+  const rows = STATIONS.map(({ device, station }) => ({ device, station }))
+  const { wire, stations } = createLine({ stations: rows, baudRate, turnaround: TURNAROUND, quiet: true })
+  const server = serveOnPty({ wire, link })
+  const histories = STATIONS.map(createHistory)
+  let version = 0
+  const change = () => {
+    version++
+    STATIONS.forEach(({ station, first }, n) => {
+      wordsOf(station, version).forEach((word, at) => stations[n].set(`${first}${at}`, word))
+      histories[n].at(performance.now(), version)
+    })
+  }
+  change()
+  const timer = setInterval(change, CHANGE)
+  return {
+    histories,
+    stations,
+    wire,
+    close: () => {
+      clearInterval(timer)
+      server.close()
+    }
+  }
+}
+
+/** One station as our library sees it, with the judge of its values. */
+function createNearEnd(shape, device, { history, wrong }) {
+  const { station, block, setPoint } = shape
+  const seen = { cycles: 0, values: 0, writes: 0, asks: 0, failures: [] }
+  // what was sent as set point: from when it may have been there, and until when
+  const sent = [{ value: 0, from: -Infinity, until: Infinity }]
+  const judge = (results, from) => {
+    const to = performance.now()
+    for (const { item, value, quality, code } of results) {
+      if (quality !== 'good') seen.failures.push(`${station} ${item}: ${code}`)
+      else if (!isHeld(item, value, from, to)) wrong.push({ station, item, value, from, to })
+      else seen.values++
+    }
+  }
+  const isHeld = (item, value, from, to) => {
+    if (item === setPoint) return sent.some(each => each.value === value && each.from <= to && each.until >= from)
+    const [version] = value
+    return history.between(from, to).includes(version) && String(value) === String(wordsOf(station, version))
+  }
+  const subscription = device.subscribe({ items: [block, setPoint], interval: shape.interval }, (results, { ms }) => {
+    seen.cycles++
+    judge(results, performance.now() - ms - 1)
+  })
+  return {
+    shape,
+    seen,
+    subscription,
+    async ask() {
+      seen.asks++
+      const from = performance.now()
+      judge(await device.read([block]), from)
+    },
+    async write(value) {
+      const before = sent.at(-1)
+      const entry = { value, from: performance.now(), until: Infinity }
+      sent.push(entry)
+      const { outcome, code } = await device.write({ [setPoint]: value })
+      if (outcome === 'confirmed') seen.writes++
+      else seen.failures.push(`${station} write: ${outcome} ${code}`)
+      before.until = performance.now()
+    },
+    last: () => sent.at(-1).value
+  }
+}
+
+const openDevice = ({ device, station }, line) => {
+  if (device === 'nx') return openNxPlc({ ...line, station, access: 'write', timeout: 1000 })
+  return openChinoRegulator({ ...line, station, access: 'write', timeout: 1000 })
+}
+
+/** Calls `run` every `ms`, one after the other, until it is stopped. */
+function every(ms, run) {
+  let stopped = false
+  const rest = () => new Promise(resolve => setTimeout(resolve, ms))
+  const done = (async () => {
+    for (await rest(); !stopped; await rest()) await run()
+  })()
+  return () => {
+    stopped = true
+    return done
+  }
+}
+
+/**
+ * @param {{ seconds?: number, baudRate?: number, seed?: number }} [options]
+ * @returns {Promise<{ seconds: number, busy: number, wrong: any[], failures: string[], polls: any[], values: number, writes: number, asks: number,
+ *   stats: any }>} busy: share of the time that the line had something to do; polls: cycles of each station, and how many were due
+ */
+async function mixedLine({ seconds = 60, baudRate = 19200, seed = 1 } = {}) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'mixed-'))
+  const link = path.join(folder, 'line')
+  const far = createFarEnd(baudRate, link)
+  const pool = createPool()
+  const random = createRandom(seed)
+  const devices = STATIONS.map(shape => openDevice(shape, { pool, path: link, baudRate }))
+  const wrong = []
+  try {
+    // the first answer of each: from here on the rate counts
+    await Promise.all(devices.map((device, n) => device.read([STATIONS[n].setPoint])))
+    const near = devices.map((device, n) => createNearEnd(STATIONS[n], device, { history: far.histories[n], wrong }))
+    const { busy } = devices[0].line.stats()
+    const from = performance.now()
+    let turn = 0
+    const stops = [
+      every(ASK, () => random.pick(near).ask()),
+      every(WRITE, () => near[turn++ % near.length].write(random.integer(1, SET_POINT_STEPS)))
+    ]
+    await new Promise(resolve => setTimeout(resolve, seconds * 1000))
+    const took = performance.now() - from
+    const polls = near.map(({ shape, seen, subscription }) => {
+      subscription.stop()
+      const { device, station, interval } = shape
+      return { device, station, interval, cycles: seen.cycles, due: took / interval, overruns: subscription.overruns }
+    })
+    await Promise.all(stops.map(stop => stop()))
+    const stats = devices[0].line.stats()
+    near.forEach(({ shape, last }, n) => assert.equal(far.stations[n].get(shape.setPoint), last()))
+    const sum = name => near.reduce((total, { seen }) => total + seen[name], 0)
+    return {
+      seconds: took / 1000,
+      busy: (stats.busy - busy) / took,
+      wrong,
+      failures: near.flatMap(({ seen }) => seen.failures),
+      polls,
+      values: sum('values'),
+      writes: sum('writes'),
+      asks: sum('asks'),
+      stats
+    }
+  } finally {
+    await Promise.all(devices.map(device => device.close()))
+    far.close()
+    fs.rmSync(folder, { recursive: true, force: true })
+  }
+}
+
+module.exports = { mixedLine }

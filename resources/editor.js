@@ -3346,17 +3346,24 @@ var nxlineSerialPlc = (() => {
         [deviceProperty(), "format", "ranges", "booleans"].forEach((name) => field(name).on("change", judgeAll));
         judgeAll();
       };
-      var resizeRead = (size) => {
+      var room = 0;
+      var fitList = () => {
+        if (room === 0 || !showsList()) return;
         const others = $("#dialog-form > div:visible").not(".nxline-list").toArray();
         const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0);
-        $("#nxline-read-items").editableList("height", Math.max(240, size.height - used - 100));
+        const least = $(".nxline-both").is(":visible") ? 150 : 240;
+        $("#nxline-read-items").editableList("height", Math.max(least, room - used - 100));
+      };
+      var resizeRead = (size) => {
+        room = size.height;
+        fitList();
       };
       var readLabel = (node) => {
         if (node.itemsType === "msg") return "msg.items";
         const items = node.items || [];
         return items.length > 2 ? `${items.slice(0, 2).join(", ")} …` : items.join(", ");
       };
-      module.exports = { itemTexts, prepareReading, readLabel, resizeRead };
+      module.exports = { fitList, itemTexts, prepareReading, readLabel, resizeRead };
     }
   });
 
@@ -3404,7 +3411,7 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { done } = require_check();
       var { field, openForm, reads, value, writes } = require_form();
-      var { itemTexts, prepareReading, readLabel, resizeRead } = require_reading();
+      var { fitList, itemTexts, prepareReading, readLabel, resizeRead } = require_reading();
       var { failureOutputs, prepareWriting, writeLabel } = require_writing();
       var editRead = (node) => {
         openForm("nx-read", node);
@@ -3427,6 +3434,7 @@ var nxlineSerialPlc = (() => {
         $(".nxline-writes").toggle(writes());
         $(".nxline-both").toggle(value("mode") === "both");
         ["itemsType", "target", "interval"].forEach((name) => field(name).trigger("change"));
+        fitList();
       };
       var editRegulator = (node) => {
         openForm("chino-regulator", node);

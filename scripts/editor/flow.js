@@ -1,7 +1,7 @@
 'use strict'
 const { done } = require('./check')
 const { field, openForm, reads, value, writes } = require('./form')
-const { itemTexts, prepareReading, readLabel, resizeRead } = require('./reading')
+const { fitList, itemTexts, prepareReading, readLabel, resizeRead } = require('./reading')
 const { failureOutputs, prepareWriting, writeLabel } = require('./writing')
 
 /** The dialogs of the nodes of the flow. */
@@ -36,6 +36,7 @@ const showMode = () => {
   $('.nxline-both').toggle(value('mode') === 'both')
   // what counts depends on the mode: let it be judged again
   ;['itemsType', 'target', 'interval'].forEach(name => field(name).trigger('change'))
+  fitList()
 }
 
 /** oneditprepare of chino-regulator. */

@@ -139,11 +139,21 @@ const prepareReading = node => {
   judgeAll()
 }
 
-/** oneditresize of a node that reads: the list takes what the other rows leave. */
-const resizeRead = size => {
+let room = 0
+
+/** The list takes what the other rows leave; beside what is written it is short. */
+const fitList = () => {
+  if (room === 0 || !showsList()) return
   const others = $('#dialog-form > div:visible').not('.nxline-list').toArray()
   const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0)
-  $('#nxline-read-items').editableList('height', Math.max(240, size.height - used - 100))
+  const least = $('.nxline-both').is(':visible') ? 150 : 240
+  $('#nxline-read-items').editableList('height', Math.max(least, room - used - 100))
+}
+
+/** oneditresize of a node that reads. */
+const resizeRead = size => {
+  room = size.height
+  fitList()
 }
 
 /** The label of a reader without a name. */
@@ -153,4 +163,4 @@ const readLabel = node => {
   return items.length > 2 ? `${items.slice(0, 2).join(', ')} …` : items.join(', ')
 }
 
-module.exports = { itemTexts, prepareReading, readLabel, resizeRead }
+module.exports = { fitList, itemTexts, prepareReading, readLabel, resizeRead }

@@ -45,6 +45,23 @@ describe('diagnose: the likely cause, by the bytes that were seen', () => {
     ['NX on MODBUS', RTU, nx(0xe2, 6, 0xa3, 1, 2, 3, 4), 'OTHER_PROTOCOL', /NX .* station 6/, ['driver', 'protocol']],
     ['MODBUS on NX', NX, rtu(3, 3, 4, 0, 7, 0, 8), 'OTHER_PROTOCOL', /MODBUS RTU .* station 3/, ['driver', 'protocol']],
     [
+      'the answer to another question',
+      RTU,
+      rtu(0x11, 4, 2, 0, 7),
+      'UNEXPECTED',
+      /: 11 04 02 00 07/,
+      ['systemConfiguration']
+    ],
+    ['the same, NX', NX, query => nx(query[1], 1, 0xa1, 1, 0), 'UNEXPECTED', /whole frame/, ['systemConfiguration']],
+    [
+      'the same, of the only PLC',
+      { ...NX, station: 255 },
+      query => nx(query[1], 9, 0xa1, 1, 0),
+      'UNEXPECTED',
+      /whole frame/,
+      ['systemConfiguration']
+    ],
+    [
       'exception 01',
       { ...RTU, item: '400005' },
       rtu(0x11, 0x83, 1),
@@ -182,8 +199,10 @@ describe('diagnose: a late answer', () => {
   ]) {
     it(`${what}: says how late, and asks for a longer timeout`, async () => {
       const { wire, run, end } = bench(says(bytes, { after: 550 }), options)
-      const { cause, seen, ms, rows } = await run()
+      const { cause, seen, ms, rows, row } = await run()
       assert.equal(cause.code, 'LATE')
+      // it has answered: all but the timeout is right
+      assert.deepEqual([seen.reached, row('speed').result, row('protocol').result], [false, 'ok', 'ok'])
       assert.match(cause.text, /answered 350 ms after its 200 ms timeout/)
       assert.match(cause.remedy, /900 ms/)
       assert.deepEqual([seen.lateness, wire.sent.length, wrong(rows)], [350, 1, ['otherSettings']])

@@ -129,9 +129,10 @@ describe('diagnose: other modes, on request', () => {
 
   it('RTU is configured, ASCII answers; the line is not opened again', async () => {
     const { run, opened, end } = bench((bytes, { reply }) => isAscii(bytes) && reply(VALUE_ASCII), RTU)
-    const { cause, rows, row } = await run({ tryOtherModes: true })
+    const { cause, rows, row, seen } = await run({ tryOtherModes: true })
     assert.equal(cause.code, 'OTHER_MODE')
     assert.match(cause.remedy, /^Set the protocol to ASCII/)
+    assert.equal(seen.sent, rtu(0x11, 3, 0, 0, 0, 1).toString('hex'))
     assert.deepEqual([opened.length, wrong(rows), row('speed').result], [1, ['protocol'], 'ok'])
     await end()
   })

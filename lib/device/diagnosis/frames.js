@@ -15,6 +15,7 @@ const { decodeFrame } = require('../../codec/nx/frame')
  * @property {number} at @property {number} length
  */
 
+const ANSWER = 0x80
 const LEAST_MASTER = 192
 const MOST_STATION = 247
 const READS = [1, 2, 3, 4]
@@ -30,7 +31,8 @@ const fits = (bytes, at, length) => {
 function nxAt(bytes, at) {
   const frame = decodeFrame(bytes, at)
   if (!frame) return null
-  const query = frame.fn < 0x80 && frame.fn !== 0 && frame.from !== frame.to && frame.to < LEAST_MASTER
+  // answers have the highest bit; but "no service" is 00, and so is the RR of a master
+  const query = frame.fn < ANSWER && frame.to < LEAST_MASTER
   const station = query ? frame.to : frame.from
   return { protocol: 'nx', station, query, to: frame.to, at, length: frame.length }
 }

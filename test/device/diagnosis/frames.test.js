@@ -41,6 +41,23 @@ describe('frames among stray bytes', () => {
     assert.equal(found[1].to, 0xe2)
   })
 
+  it('NX: who asks and who answers', () => {
+    for (const [bytes, station, query] of /** @type {[Buffer, number, boolean][]} */ ([
+      [nx(3, 0xe2, 0x23, 1, 0xbf, 1, 1), 3, true],
+      [nx(3, 0xe2, 0x00, 0), 3, true],
+      [nx(0xe2, 3, 0x00, 0), 3, false],
+      [nx(100, 3, 0xa3, 5, 0, 6, 0), 3, false]
+    ])) {
+      const [found] = findFrames(bytes, 'nx')
+      assert.deepEqual([found.station, found.query], [station, query], bytes.toString('hex'))
+    }
+  })
+
+  it('no MODBUS station has a number above 247', () => {
+    assert.equal(findFrames(rtu(247, 3, 2, 0, 7), 'rtu').length, 1)
+    assert.deepEqual(findFrames(rtu(248, 3, 2, 0, 7), 'rtu'), [])
+  })
+
   it('bytes that can be both are those of the protocol that is expected', () => {
     // receiver 226, sender 6, LEN 2: to MODBUS a write of station 226
     const both = nx(0xe2, 6, 0xa3, 1, 2)

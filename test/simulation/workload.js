@@ -130,4 +130,4 @@ function checkWrites({ writes, report, line }) {
   report.executed = line.stations.reduce((sum, each) => [...each.writes.values()].reduce((a, b) => a + b, sum), 0)
 }
 
-module.exports = { NX, createDevice, checkWrites, mixed, read, regulators, simulated, step, write }
+module.exports = { NX, checkWrites, createDevice, isHeld, mixed, read, regulators, simulated, step, write }

@@ -60,11 +60,12 @@ const stationList = line => {
       members.delete(deviceNode.station)
       line.wire?.remove(deviceNode.station)
     },
-    /** A station that is only tested: on a simulated line it has power for that long. */
+    /** A station that is only tested: on a simulated line it has power for that long. One that is deployed stays as it is. */
     visit(settings) {
-      line.wire.add(settings)
+      const absent = () => !members.has(settings.station)
+      if (absent()) line.wire.add(settings)
       return () => {
-        if (!members.has(settings.station)) line.wire.remove(settings.station)
+        if (absent()) line.wire.remove(settings.station)
       }
     },
     stations: () => [...members.keys()]

@@ -253,6 +253,16 @@ describe('regulators: deploys, and lines with PLCs', () => {
     assert.equal(seen[0].payload._400001, 500)
   })
 
+  it('a test with another protocol does not change the simulated regulator that is deployed', async () => {
+    const line = { id: 'line', type: 'plc-line', transport: 'simulated' }
+    const { out } = await load([line, zone({ station: '5', timeout: '1000' }), polling()])
+    await until(() => out.length > 0)
+    const undo = helper.getNode('line').plcs.visit({ type: 'chino-config', station: 5, protocol: 'ascii' })
+    undo()
+    const sent = out.length
+    await until(() => out.length > sent + 1, 'more values')
+  })
+
   it('a simulated regulator that becomes ASCII, or a PLC, is another station', async () => {
     const line = { id: 'line', type: 'plc-line', transport: 'simulated' }
     await load([line, zone({ station: '5', timeout: '1000' }), polling()])

@@ -8,7 +8,6 @@ const { createReceiver } = require('./receiver')
 const SHORTEST = 4 // station, function, CRC
 const LONGEST = 256
 const EMPTY = Buffer.alloc(0)
-const BROADCAST = 0
 
 /**
  * The receiver of a MODBUS RTU station (receiver.js). MODBUS frames do not say how long they are: the length follows from the function,
@@ -19,7 +18,6 @@ const BROADCAST = 0
  */
 function createRtuReceiver({ gap, station, counts }) {
   const decodeAt = (held, at, aligned) => {
-    // a broadcast, and a function that nobody knows, are believed only where a frame begins: zeros are everywhere
     const lengths = lengthsAt(held, at, { mine: held[at] === station, aligned })
     const length = lengths.find(each => each <= held.length - at && crcFits(held, at, each))
     if (length === undefined) return null
@@ -36,9 +34,10 @@ function createRtuReceiver({ gap, station, counts }) {
 
 /** Lengths that a frame may have that begins here, the likeliest one first. */
 function lengthsAt(held, at, { mine, aligned }) {
-  if (!aligned && held[at] === BROADCAST) return []
   const known = knownLengths(held, at, mine)
-  if (!aligned || (mine && known.length > 0)) return known
+  // behind a damaged frame only a whole query to this station counts
+  if (!aligned) return mine ? known : []
+  if (mine && known.length > 0) return known
   // a function without a length of its own, or another protocol on the same line: whatever has come so far
   const whole = held.length - at
   return whole <= LONGEST ? [...known, whole] : known

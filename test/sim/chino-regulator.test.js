@@ -341,7 +341,12 @@ describe('simulated regulator: RTU receiver', () => {
     // a whole broadcast write inside the data of another's answer
     const inside = framed(...bytes('00 06 00 07 12 34'))
     assert.deepStrictEqual(answers(hear(framed(0x12, 3, 8, ...inside))), [])
-    assert.deepStrictEqual(answers(hear(Buffer.concat([bytes('12 03 07'), inside]))), [])
+    const damaged = framed(0x12, 3, 8, ...inside)
+    damaged[12] ^= 1
+    assert.deepStrictEqual(answers(hear(damaged)), [])
+    assert.deepStrictEqual(answers(hear(Buffer.concat([bytes('12 03 02'), inside]))), [])
+    // a whole query of its own in there: what follows without a pause is the only one
+    assert.deepStrictEqual(answers(hear(Buffer.concat([framed(0x12, 3, 8, ...READ), READ]))), [ZERO])
     assert.deepStrictEqual(answers(hear(framed(...bytes('11 83 02')))), [])
     assert.deepStrictEqual(answers(hear(framed(...bytes('11 03 04 00 00 00 00')))), [])
     assert.strictEqual(station.writes.size, 0)

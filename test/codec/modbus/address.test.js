@@ -75,6 +75,7 @@ describe('MODBUS addresses', () => {
     ['001001..001016', 'bit', 0x2003e8, 16, '001001..001016'],
     ['401001.00..401001.15', 'bit', 16000, 16, '401001.00..401001.15'],
     ['401001.14..401002.01', 'bit', 16014, 4, '401001.14..401002.01'],
+    ['co0..co4095', 'bit', 0x200000, 4096, 'co0..co4095'],
     ['hr5..hr5', 'word', 5, 1, 'hr5']
   ]
   for (const [text, kind, address, count, canonical] of ranges) {
@@ -123,7 +124,7 @@ describe('MODBUS addresses', () => {
     ['400001..400002.00', 'BAD_ADDRESS', /one end is a bit/],
     ['400001..hr9', 'BAD_ADDRESS', /same way/],
     ['400009..400001', 'BAD_ADDRESS', /backwards/],
-    ['000001..005000', 'BAD_COUNT', /too long/],
+    ['co0..co4096', 'BAD_COUNT', /too long/],
     ['4'.repeat(100), 'BAD_ADDRESS', /more than 64/],
     [400108, 'BAD_ADDRESS', /a number loses its zeros; write the address in quotes/],
     [null, 'BAD_ADDRESS', /not text/],

@@ -271,15 +271,16 @@ describe('nx-read', () => {
 
   it('a simulated line marks its messages and its status', async () => {
     const line = { id: 'line', type: 'plc-line', transport: 'simulated' }
-    const { out } = await load([line, plcNode({ name: '' }), reader({ items: ['M0', 'W10:float32'], interval: '20' })])
+    const { out } = await load([
+      line,
+      plcNode({ name: '', timeout: '1000' }),
+      reader({ items: ['M0', 'W10:float32'], interval: '20' })
+    ])
     const seen = statuses('read')
     await until(() => out.length > 0)
     assert.equal(out[0].simulated, true)
     assert.equal(out[0].topic, 'NX PLC 1')
-    await until(() => seen.length > 1)
-    assert.deepEqual(
-      seen.map(({ text }) => text),
-      ['SIM connecting', 'SIM 2 values']
-    )
+    await until(() => seen.some(({ text }) => text === 'SIM 2 values'), 'the status, a second later')
+    assert.ok(seen.every(({ text }) => text.startsWith('SIM ')))
   })
 })

@@ -31,9 +31,13 @@ class Echo {
     this.#clean = true
   }
 
-  /** Other bytes came first: they may have been our echo, damaged. */
-  disturbed() {
+  /**
+   * Other bytes came first: they may have been our echo, damaged. What was thought to hear nothing may have missed its echo once.
+   * @param {Buffer} bytes
+   */
+  disturbed(bytes) {
     this.#clean = false
+    if (this.#mode === 'auto' && this.state === 'absent' && bytes.includes(this.#sent)) this.state = 'unknown'
   }
 
   get #awaited() {
@@ -63,11 +67,11 @@ class Echo {
     return this.#awaited && bytes.length >= this.#sent.length && bytes.subarray(0, this.#sent.length).equals(this.#sent)
   }
 
-  /** The step was answered: now it is known. */
+  /** The step was answered: now it is known; a single stray copy of our bytes must not be believed for ever. */
   answered() {
-    if (this.state !== 'unknown') return
+    if (this.#mode !== 'auto' || this.state === 'absent') return
     if (this.#heard) this.state = 'present'
-    else if (this.#clean) this.state = 'absent'
+    else if (this.#clean) this.state = this.state === 'present' ? 'unknown' : 'absent'
   }
 }
 

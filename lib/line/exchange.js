@@ -180,8 +180,9 @@ class Exchange {
       if (!(skip > 0) || this.#echo.begins(bytes.subarray(at))) break
       at += skip
     }
-    this.#echo.disturbed()
-    this.#link.skipped(this.#rx.take(at))
+    const dropped = this.#rx.take(at)
+    this.#echo.disturbed(dropped)
+    this.#link.skipped(dropped)
   }
 
   #damaged({ bad, length }) {

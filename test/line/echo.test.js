@@ -97,6 +97,29 @@ describe('line: the echo of a 2-wire adapter', () => {
     assert.equal(bench.lease.line.echo, 'unknown')
   })
 
+  it('that came once by chance is not believed for ever', async () => {
+    const bench = createBench({ onQuery: wired() })
+    await ask(bench)
+    assert.equal(bench.lease.line.echo, 'present')
+    bench.wire.onQuery = wired({ echo: false })
+    await ask(bench)
+    assert.equal(bench.lease.line.echo, 'unknown')
+    await ask(bench)
+    assert.equal(bench.lease.line.echo, 'absent')
+    assert.equal(await put(bench), 'confirmed')
+  })
+
+  it('that was missed once confirms no write afterwards', async () => {
+    const bench = createBench({ onQuery: wired({ echo: false }) })
+    await ask(bench)
+    assert.equal(bench.lease.line.echo, 'absent')
+    bench.wire.onQuery = wired()
+    await ask(bench)
+    assert.equal(bench.lease.line.echo, 'unknown')
+    bench.wire.onQuery = wired({ answers: false })
+    assert.equal((await failure(put(bench))).code, 'TIMEOUT')
+  })
+
   it('can be set', async () => {
     const on = createBench({ settings: { echo: 'on' }, onQuery: wired({ answers: false }) })
     assert.equal((await failure(put(on))).code, 'TIMEOUT')

@@ -8,6 +8,7 @@
 const assert = require('node:assert/strict')
 const { execFileSync } = require('node:child_process')
 const path = require('node:path')
+const { crc16 } = require('../../lib/codec/crc16')
 const { decodeAnswer } = require('../../lib/codec/modbus/answer')
 const { readDialog, writeDialog } = require('../../lib/codec/modbus/dialog')
 const { encodeQuery } = require('../../lib/codec/modbus/query')
@@ -160,9 +161,18 @@ for (const protocol of ['rtu', 'ascii']) {
   })
 }
 
-/** RTU: the station's number and a function of it stand somewhere in the noise, so it may be the head of an answer. */
+/**
+ * RTU: the station's number and a function of it stand somewhere in the noise, so it may be the head of an answer; or the noise and the first bytes
+ * of the answer are, by chance, a whole frame of another station.
+ */
 function couldBegin(stream, noise, { station }) {
-  for (let at = 0; at < noise; at++)
-    if (stream[at] === station && FUNCTIONS.includes(stream[at + 1] & 0x7f)) return true
+  for (let at = 0; at < noise; at++) {
+    const fn = stream[at + 1]
+    if (!FUNCTIONS.includes(fn & 0x7f)) continue
+    if (stream[at] === station) return true
+    const length = fn & 0x80 ? 5 : fn <= 4 ? 5 + stream[at + 2] : 8
+    const end = at + length - 2
+    if (end > noise && end + 2 <= stream.length && crc16(stream, at, end) === stream.readUInt16LE(end)) return true
+  }
   return false
 }

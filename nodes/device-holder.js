@@ -1,5 +1,6 @@
 'use strict'
 const { createDevice, deviceSettings } = require('./device-settings')
+const { onStarted } = require('./started')
 
 /** What the line or the device advises, once for each kind: it stands in the log and in the debug sidebar. */
 const adviser = deviceNode => {
@@ -57,7 +58,7 @@ const deviceHolder = (deviceNode, events) => {
   const settle = () => {
     if (users.size === 0) release()
   }
-  events.on('flows:started', settle)
+  const stop = onStarted(events, settle)
 
   return {
     /**
@@ -83,7 +84,7 @@ const deviceHolder = (deviceNode, events) => {
       if (deviceNode.lineNode?.users[node.id] === node) delete deviceNode.lineNode.users[node.id]
     },
     close() {
-      events.off('flows:started', settle)
+      stop()
       return release()
     }
   }

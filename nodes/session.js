@@ -1,6 +1,7 @@
 'use strict'
 const { PlcError, createThrottle } = require('../lib/index.js')
 const { readSettings } = require('./settings')
+const { onStarted } = require('./started')
 const { fitted, statusOf } = require('./status')
 
 const SHARED = '@nxline/node-red-serial-plc/plc-line:status.'
@@ -41,15 +42,12 @@ const statusDisplay = (RED, node) => {
  */
 const deployReport = (RED, node) => {
   let errors = []
-  const tell = () => {
+  const stop = onStarted(RED.events, () => {
+    stop()
     errors.forEach(error => node.error(error, {}))
     errors = []
-  }
-  RED.events.once('flows:started', tell)
-  return {
-    add: error => errors.push(error),
-    stop: () => RED.events.off('flows:started', tell)
-  }
+  })
+  return { add: error => errors.push(error), stop }
 }
 
 /** Which property of a node names its device, and what type that has. */

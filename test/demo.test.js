@@ -107,6 +107,7 @@ describe('demo', function () {
     for (const name of Object.keys(devices)) assert.ok(devices[name].published > 0, name)
     assert.ok(devices.furnace.writesConfirmed > 0 && devices.zone1.writesConfirmed > 0, JSON.stringify(devices))
     assert.deepEqual([code, errors], [0, 0], demo.out + demo.err)
+    assert.equal(demo.err, '', 'no warning of the runtime')
   })
 
   it('a wrong number of seconds is refused', async () => {

@@ -4,7 +4,8 @@ const { performance } = require('node:perf_hooks')
 
 /**
  * The clock of the machine. Intervals come from the monotonic clock, so a time server that moves the wall clock by an
- * hour moves no poll. Timers are rounded up to whole ms: a timer that fires early would cut a gap short.
+ * hour moves no poll. Timers are rounded up to whole ms; Node.js may fire them up to a millisecond early all the same, so
+ * who must not be early looks at the time again.
  * @type {Clock}
  */
 const realClock = Object.freeze({

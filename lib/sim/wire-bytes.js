@@ -1,0 +1,167 @@
+'use strict'
+
+/** Bytes on their way: what each takes, who hears them, who spoils them. `wire` is what wire.js makes. */
+
+/** A way is one pair of wires: the masters' and the stations' where both can send at once, else one for all. Noise is on both. */
+const sameWay = ({ duplex }, one, other) =>
+  duplex !== 'full' || isNoise(one) || isNoise(other) || Boolean(one.handlers) === Boolean(other.handlers)
+const isNoise = ({ handlers, station }) => !handlers && !station
+
+const hears = ({ duplex, echo }, party, from) => {
+  if (party === from) return Boolean(party.handlers) && echo
+  return duplex !== 'full' || isNoise(from) || Boolean(party.handlers) !== Boolean(from.handlers)
+}
+
+/** When the last byte has passed, or the last one that would meet those of `from`. */
+const idleAt = (wire, from) =>
+  wire.active.reduce(
+    (latest, each) => (from && !sameWay(wire, each.from, from) ? latest : Math.max(latest, each.end)),
+    0
+  )
+
+/**
+ * Puts bytes on the wire, behind what the same sender still has to send.
+ * @param {any} wire
+ * @param {any} from
+ * @param {{ bytes: Buffer, at: number, passed?: () => void }} sending passed: called when the last of them has passed
+ * @returns {number} when that will be
+ */
+function transmit(wire, from, { bytes, at, passed }) {
+  if (bytes.length === 0) {
+    passed?.()
+    return Math.max(at, from.busyUntil)
+  }
+  if (from.held) {
+    from.held.push({ bytes, passed })
+    return Infinity
+  }
+  const start = Math.max(at, from.busyUntil, wire.collisions ? 0 : idleAt(wire, from))
+  const end = start + bytes.length * wire.byteMs
+  const sending = { from, bytes: Buffer.from(bytes), sent: bytes, start, end, told: 0, passed, timer: null }
+  from.busyUntil = end
+  wire.counts.frames++
+  wire.counts.bytes += bytes.length
+  if (wire.collisions && wire.active.length > 0) collide(wire, sending)
+  wire.active.push(sending)
+  schedule(wire, sending)
+  return end
+}
+
+/** Where two senders overlap, both bytes are spoilt; what was heard before stays heard. */
+function collide(wire, sending) {
+  for (const other of wire.active) {
+    if (other.from === sending.from || other.end <= sending.start || sending.end <= other.start) continue
+    if (!sameWay(wire, other.from, sending.from)) continue
+    wire.counts.collisions++
+    spoil(wire, other, sending)
+    spoil(wire, sending, other)
+  }
+}
+
+function spoil({ byteMs, random, collisions }, victim, { start, end }) {
+  const first = Math.max(victim.told, Math.floor((start - victim.start) / byteMs))
+  const last = Math.min(victim.bytes.length, Math.ceil((end - victim.start) / byteMs))
+  for (let n = first; n < last; n++) {
+    // the highest bits alone of bytes in a row: no multiple of the CRC's polynomial, and no digit of ASCII
+    if (collisions === 'seen') victim.bytes[n] = victim.sent[n] ^ 0x80
+    else victim.bytes[n] ^= random.integer(1, 255)
+  }
+}
+
+function schedule(wire, sending) {
+  const { clock, byteMs } = wire
+  const { bytes, start, told } = sending
+  const listeners = [...wire.parties].filter(party => hears(wire, party, sending.from))
+  const until = start + Math.min(bytes.length, told + pieceOf(wire, sending, listeners)) * byteMs
+  // nothing but a master, or a station that may let one go on, touches a promise
+  const quiet = !sending.passed && !listeners.some(({ handlers, station }) => handlers || station.appetite)
+  sending.timer = clock.setTimer(() => arrive(wire, sending), until - clock.now(), { quiet })
+}
+
+/**
+ * How many bytes are heard at once. A master's frame reaches the stations whole: they need no pieces, and a timer each would be
+ * wasted; but a station that may react to any byte (`appetite`) says how many it can hear at once.
+ */
+function pieceOf({ chunk, echo }, { from, bytes }, listeners) {
+  const hungry = listeners.flatMap(({ station }) => (station?.appetite ? [station.appetite()] : []))
+  const whole = from.handlers && !echo
+  const standard = whole ? bytes.length : typeof chunk === 'function' ? chunk() : chunk
+  return Math.max(1, Math.min(standard, ...hungry))
+}
+
+/** What has come over the wire by now is heard: floor(elapsed × baud / 10) bytes, however late the timer is. */
+function arrive(wire, sending) {
+  const { clock, byteMs, active } = wire
+  const { bytes, start, from } = sending
+  // timers of a real clock may overtake each other; the bytes of one sender do not
+  const overtaken = each => each.from === from && each.start < start && each.end <= clock.now()
+  for (const earlier of active.filter(overtaken)) arrive(wire, earlier)
+  const { told } = sending
+  if (told === bytes.length) return
+  const count = Math.min(bytes.length, Math.floor((clock.now() - start) / byteMs + 1e-6))
+  if (count > told) {
+    const times = { start: start + told * byteMs, end: start + count * byteMs }
+    sending.told = count
+    tell(wire, sending, { piece: worn(wire, bytes.subarray(told, count)), times })
+  }
+  // what hears a piece may stop its sender: `bytes` is shorter then
+  if (sending.told < sending.bytes.length) return schedule(wire, sending)
+  remove(wire, sending)
+  sending.passed?.()
+}
+
+function tell(wire, { from }, { piece, times }) {
+  if (piece.length === 0) return
+  for (const party of [...wire.parties]) if (hears(wire, party, from)) party.hear(piece, times, from)
+}
+
+function remove({ active }, sending) {
+  const place = active.indexOf(sending)
+  if (place >= 0) active.splice(place, 1)
+}
+
+/** Single bytes that are damaged or lost, at the rates of `wear`, on their way to whomever. */
+function worn({ wear, random }, piece) {
+  if (!wear) return piece
+  const { damaged = 0, lost = 0 } = wear
+  const left = []
+  for (const byte of piece) {
+    const share = random.next()
+    if (share < lost) continue
+    left.push(share < lost + damaged ? byte ^ random.integer(1, 255) : byte)
+  }
+  return Buffer.from(left)
+}
+
+/** The sender's UART stops behind the byte that it is sending; what is left is kept until `release`. */
+function hold(wire, from) {
+  if (from.held) return
+  from.held = []
+  const { clock, byteMs, active } = wire
+  for (const sending of active.filter(each => each.from === from)) {
+    const { bytes, start } = sending
+    const begun = Math.ceil((clock.now() - start) / byteMs - 1e-6)
+    const count = Math.min(bytes.length, Math.max(sending.told, begun))
+    if (count === bytes.length) continue
+    from.held.push({ bytes: bytes.subarray(count), passed: sending.passed })
+    sending.passed = undefined
+    sending.bytes = bytes.subarray(0, count)
+    sending.end = start + count * byteMs
+    wire.counts.bytes -= bytes.length - count
+    clock.clearTimer(sending.timer)
+    if (sending.told === count) remove(wire, sending)
+    else schedule(wire, sending)
+  }
+  from.busyUntil = active.reduce(
+    (latest, each) => (each.from === from ? Math.max(latest, each.end) : latest),
+    clock.now()
+  )
+}
+
+function release(wire, from) {
+  const held = from.held ?? []
+  from.held = null
+  for (const each of held) transmit(wire, from, { ...each, at: wire.clock.now() })
+}
+
+module.exports = { transmit, idleAt, hold, release }

@@ -47,7 +47,7 @@ const CODES = Object.freeze({
   // --- guards: refused before anything is sent
   READ_ONLY: [
     '{item} was not written: station {station} is read-only here',
-    'Set Access to "read and write" in the configuration of the PLC.'
+    'Set Access to "read and write" in the configuration of the device.'
   ],
   NOT_WRITABLE: [
     '{item} was not written: {reason}',
@@ -151,7 +151,10 @@ const CODES = Object.freeze({
     'Read it back before you write again.'
   ],
   NOT_A_VALUE: ['{item} cannot be read as {type}: {reason}', 'Check the data type and the word order of the item.'],
-  VERIFY_FAILED: ['{item} reads {got} after {expected} was written', 'The program of the PLC may overwrite it.'],
+  VERIFY_FAILED: [
+    '{item} reads {got} after {expected} was written',
+    'The program of the PLC, or the device itself, may overwrite it.'
+  ],
   // --- the line
   QUEUE_FULL: ['the queue of {line} is full ({most} requests)', 'Poll less often, or fewer items.'],
   DEADLINE: [
@@ -215,7 +218,7 @@ const CODES = Object.freeze({
   ],
   DUPLICATE_STATION: [
     '{owner} and {other} are both station {station} of {line}',
-    'Use one configuration for one PLC, or correct the number.'
+    'Use one configuration for one device, or correct the number.'
   ],
   // --- the simulator
   SIM_DEADLOCK: ['nothing can happen any more, but this is still open: {open}', 'Report it with the seed of the run.'],

@@ -190,7 +190,7 @@ describe('example flows', () => {
       const known = new Set(nodes.map(node => node.id))
       for (const node of nodes) {
         const targets = [...(node.wires || []).flat(), ...(node.z ? [node.z] : []), ...(node.g ? [node.g] : [])]
-        const keys = node.type === 'mqtt-broker' ? [] : ['broker', 'plc', 'line', 'influxdb', 'mydb']
+        const keys = node.type === 'mqtt-broker' ? [] : ['broker', 'plc', 'regulator', 'line', 'influxdb', 'mydb']
         for (const key of keys) if (node[key]) targets.push(node[key])
         for (const target of targets) assert.ok(known.has(target), `${node.type} ${node.name || node.id} -> ${target}`)
       }

@@ -24,7 +24,7 @@ const NUMBERS = Object.freeze(
     ['inputRead', 125, 1, 125],
     ['holdingRead', 125, 1, 125],
     ['holdingWrite', 123, 1, 123],
-    ['turnaround', 100, 0, 60000],
+    ['turnaround', 100, 0, 10000],
     ['deadline', 0, 0, 3600000]
   ])
 )

@@ -149,4 +149,4 @@ class ModbusTalk {
   close() {}
 }
 
-module.exports = { ModbusTalk, writeOf }
+module.exports = { ModbusTalk }

@@ -40,4 +40,4 @@ const lineTimes = settings => ({
   slack: slackTime(settings)
 })
 
-module.exports = { SLACK, bitsPerCharacter, characterTime, gapTime, lineTimes, slackTime }
+module.exports = { bitsPerCharacter, characterTime, gapTime, lineTimes, slackTime }

@@ -97,4 +97,4 @@ const planReads = (points, limits) => {
   return [...own.map(ownRequest), ...shared.map(sharedRequest)]
 }
 
-module.exports = { FRAME_COST, LAST_MIXED, planReads }
+module.exports = { LAST_MIXED, planReads }

@@ -167,4 +167,4 @@ const parseType = text => {
   throw new PlcError('BAD_TYPE', { type: String(text), reason, known: TYPE_NAMES.join(', ') })
 }
 
-module.exports = { TYPE_NAMES, parseType, round }
+module.exports = { parseType, round }

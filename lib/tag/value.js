@@ -103,4 +103,4 @@ const encodeValue = (item, value) => {
   return Array.from(value, one => encodeOne(item, one))
 }
 
-module.exports = { decodeValue, encodeValue, toEngineering, toRaw }
+module.exports = { decodeValue, encodeValue }

@@ -106,7 +106,7 @@ describe('CHINO regulator: settings', () => {
     [{ timeout: 5 }, 'BAD_SETTING'],
     [{ sendWait: -1 }, 'BAD_SETTING'],
     [{ attempts: 0 }, 'BAD_SETTING'],
-    [{ turnaround: 60001 }, 'BAD_SETTING'],
+    [{ turnaround: 10001 }, 'BAD_SETTING'],
     [{ wordOrder: 'middle' }, 'BAD_SETTING'],
     [{ access: 'all' }, 'BAD_SETTING'],
     [{ writableRanges: '400001..400010, 000001' }, 'good'],

@@ -117,14 +117,16 @@ describe('diagnose: all is well', () => {
     await end()
   })
 
-  it('exception 02 to an address that the user did not choose proves the connection', async () => {
-    const { run, end } = bench((_bytes, { reply }) => reply(rtu(0x11, 0x83, 2)), RTU)
-    const { ok, cause, seen, row } = await run()
-    assert.deepEqual([ok, cause, seen.value, seen.reached], [true, null, null, true])
-    assert.deepEqual([row('speed').result, row('addressRange').result], ['ok', 'open'])
-    assert.match(row('addressRange').text, /refuses function 03, wire address 0 .* enter an address that it has/)
-    await end()
-  })
+  for (const exception of [1, 2, 3]) {
+    it(`exception 0${exception} to an address that the user did not choose proves the connection`, async () => {
+      const { run, end } = bench((_bytes, { reply }) => reply(rtu(0x11, 0x83, exception)), RTU)
+      const { ok, cause, seen, row } = await run()
+      assert.deepEqual([ok, cause, seen.value, seen.reached], [true, null, null, true])
+      assert.deepEqual([row('speed').result, row('addressRange').result], ['ok', 'open'])
+      assert.match(row('addressRange').text, /refuses function 03, wire address 0 .* enter an address that it has/)
+      await end()
+    })
+  }
 
   it('an adapter that hears itself is told in the sheet', async () => {
     const { run, end } = bench((bytes, { reply }) => reply(Buffer.concat([bytes, VALUE_RTU])), RTU)

@@ -1,7 +1,9 @@
 'use strict'
 
 const assert = require('node:assert/strict')
+const ModbusRTU = require('modbus-serial')
 const { exchange } = require('../../lib/device/modbus-exchange')
+const { bench } = require('./chino-bench')
 const { rtu } = require('./slave')
 
 const bytes = text => Buffer.from(text.replace(/ /g, ''), 'hex')
@@ -162,4 +164,47 @@ describe('one exchange by modbus-serial', () => {
     for (let n = 0; n < 1000; n++) exchange({ fn: 3, base: n, count: 1 }, 1)
     assert.equal(process.getActiveResourcesInfo().length, before)
   })
+})
+
+describe('a regulator leaves the bytes of each exchange to modbus-serial', () => {
+  const FUNCTIONS = [1, 2, 3, 4, 5, 6, 15, 16]
+  const kept = FUNCTIONS.map(fn => [fn, ModbusRTU.prototype[`writeFC${fn}`]])
+  const seen = { made: [], read: [] }
+  beforeEach(() => {
+    Object.assign(seen, { made: [], read: [] })
+    for (const [fn, own] of kept) {
+      ModbusRTU.prototype[`writeFC${fn}`] = function (station, base, data, done, code) {
+        // 01 is carried out by 02, 03 by 04
+        if (code !== undefined) return own.call(this, station, base, data, done, code)
+        seen.made.push(fn)
+        const note = (error, result) => {
+          seen.read.push(fn)
+          done(error, result)
+        }
+        return own.call(this, station, base, data, note)
+      }
+    }
+  })
+  afterEach(() => kept.forEach(([fn, own]) => (ModbusRTU.prototype[`writeFC${fn}`] = own)))
+
+  for (const protocol of ['rtu', 'ascii']) {
+    it(`all functions, ${protocol}`, async () => {
+      const b = bench({ device: { protocol } })
+      const single = b.make({ coilFunction: '05', holdingFunction: '06' })
+      await b.read(['co1', 'di1', 'hr1', 'ir1'])
+      await b.write([
+        { item: 'co1', value: true },
+        { item: 'hr1', value: 1 }
+      ])
+      const entries = [
+        { item: 'co1', value: false },
+        { item: 'hr1', value: 2 }
+      ]
+      assert.equal((await b.run(single.write(entries, { fixed: true }))).outcome, 'confirmed')
+      single.close()
+      await b.close()
+      const sorted = list => list.toSorted((one, other) => one - other)
+      assert.deepEqual([sorted(seen.made), sorted(seen.read)], [FUNCTIONS, FUNCTIONS])
+    })
+  }
 })

@@ -1,8 +1,9 @@
 'use strict'
 const assert = require('node:assert/strict')
-const { lineSettings } = require('../../lib')
+const { createChinoRegulator, lineSettings } = require('../../lib')
 const { deviceSettings } = require('../../nodes/device-settings')
 const { poolSettings } = require('../../nodes/line-settings')
+const { PROPERTIES } = require('../../nodes/properties')
 const { readSettings } = require('../../nodes/settings')
 
 describe('settings on their way to the library', () => {
@@ -22,5 +23,23 @@ describe('settings on their way to the library', () => {
     const { flowControl, dtr, rts, dataBits, parity, stopBits } = lineSettings(poolSettings(line(given)))
     assert.deepEqual([flowControl, dtr, rts, dataBits, parity, stopBits], ['rtscts', 'off', 'on', 7, 'even', 2])
     assert.equal(lineSettings(poolSettings(line({}))).flowControl, 'none')
+  })
+
+  it('a regulator’s numbers have the same limits in the node and in the library', () => {
+    const lease = { line: { memory: () => ({}) } }
+    const works = settings => {
+      try {
+        createChinoRegulator({ lease, station: 1, ...settings }).close()
+        return true
+      } catch (error) {
+        assert.ok(['BAD_SETTING', 'BAD_STATION', 'BROADCAST_REFUSED'].includes(error.code), error.code)
+        return false
+      }
+    }
+    for (const [name, { kind, least, most }] of Object.entries(PROPERTIES['chino-config'])) {
+      if (kind !== 'number') continue
+      const given = [least - 1, least, most, most + 1].map(value => works({ broadcast: true, [name]: value }))
+      assert.deepEqual(given, [false, true, true, false], name)
+    }
   })
 })

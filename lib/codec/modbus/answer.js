@@ -115,6 +115,5 @@ module.exports = {
   describeQuery,
   encodeAnswer,
   encodeException,
-  expectedAnswer,
-  isException
+  expectedAnswer
 }

@@ -19,6 +19,7 @@ var nxlineSerialPlc = (() => {
       var choice = (fallback, ...known) => ({ kind: "choice", fallback, known });
       var flag = (fallback = false) => ({ kind: "flag", fallback });
       var list = () => ({ kind: "list", fallback: [] });
+      var bytes = (fallback, most) => ({ kind: "bytes", fallback, most, blank: true, says: `0 to ${most} bytes in hex` });
       var node = () => ({ kind: "node", fallback: "", needed: true });
       var READING = {
         itemsType: choice("list", "list", "msg"),
@@ -38,6 +39,11 @@ var nxlineSerialPlc = (() => {
         coalesce: flag(),
         topic: choice("item", "item", "keep", "fixed"),
         topicText: text()
+      };
+      var SENDING = {
+        access: choice("read", "read", "write"),
+        onFailure: choice("error", "error", "output"),
+        acceptRetained: flag()
       };
       var PROPERTIES = {
         "plc-line": {
@@ -113,6 +119,45 @@ var nxlineSerialPlc = (() => {
           mode: choice("read", "read", "write", "both"),
           ...READING,
           ...WRITING
+        },
+        "melsec-c24": {
+          name: text(),
+          line: node(),
+          bidirectional: flag(),
+          framing: choice("end", "end", "count", "gap"),
+          end: bytes("0D 0A", 2),
+          count: number(0, 0, 16384),
+          gap: number(0, 0, 6e4),
+          format: choice("text", "text", "bytes", "words"),
+          encoding: choice("latin1", "latin1", "utf8", "ascii"),
+          unit: choice("word", "word", "byte"),
+          ...SENDING,
+          padEven: flag(),
+          quiet: number(0, 0, 6e4),
+          timer0: number(0, 0, 6e5),
+          tornEnd: flag(),
+          flow: choice("none", "none", "dc", "driver"),
+          transparent: bytes("", 1),
+          room: number(64, 1, 4095),
+          stallLimit: number(3e4, 100, 36e5),
+          asciiBinary: flag(),
+          first: bytes("", 80),
+          last: bytes("", 80),
+          most: number(16384, 1, 65536),
+          sumCheck: flag(true),
+          ackTimeout: number(1e3, 10, 6e5),
+          priority: choice("c24", "c24", "us")
+        },
+        "incon-link": {
+          name: text(),
+          line: node(),
+          encoding: choice("ascii", "ascii", "latin1", "utf8"),
+          checked: flag(),
+          most: number(256, 2, 4096),
+          silence: number(200, 0, 6e4),
+          ...SENDING,
+          quiet: number(50, 0, 6e4),
+          before: number(5, 0, 6e4)
         }
       };
       var VARIABLE = /^\$\{([^}]+)\}$/;
@@ -129,7 +174,14 @@ var nxlineSerialPlc = (() => {
         return given === false || given === "false" ? { value: false } : { problem: "flag" };
       };
       var readChoice = (row, given) => row.known.includes(String(given)) ? { value: String(given) } : { problem: "choice" };
+      var HEX = /^(?:[0-9a-f]{2}(?:[\s,]*))*$/i;
+      var readBytes = (row, given) => {
+        const value = String(given).trim();
+        const length = value.replace(/[\s,]/g, "").length / 2;
+        return HEX.test(value) && length <= row.most ? { value } : { problem: "bytes" };
+      };
       var READERS = {
+        bytes: readBytes,
         number: readNumber,
         choice: readChoice,
         flag: (_row, given) => readFlag(given),
@@ -138,7 +190,8 @@ var nxlineSerialPlc = (() => {
         text: (_row, given) => ({ value: String(given).trim() })
       };
       var readProperty = (row, given) => {
-        const missing = given === void 0 || given === null || typeof given === "string" && given.trim() === "";
+        const empty = typeof given === "string" && given.trim() === "" && !row.blank;
+        const missing = given === void 0 || given === null || empty;
         if (missing)
           return row.needed && row.fallback === "" ? { problem: "missing", value: row.fallback } : { value: row.fallback };
         const variable = typeof given === "string" ? VARIABLE.exec(given.trim()) : null;
@@ -146,12 +199,18 @@ var nxlineSerialPlc = (() => {
         return READERS[row.kind](row, given);
       };
       var allowed = (row) => {
-        if (row.kind === "number") return row.says ?? `${row.least} to ${row.most}`;
+        if (row.says) return row.says;
+        if (row.kind === "number") return `${row.least} to ${row.most}`;
         return row.known ? row.known.join(", ") : row.kind;
       };
       var TRANSPORTS = { path: "serial", host: "tcp", port: "tcp" };
       var unused = (mode, name) => mode === "read" && name in WRITING || mode === "write" && name in READING;
+      var UNIDIRECTIONAL = ["framing", "end", "count", "gap", "first", "last", "asciiBinary", "timer0", "tornEnd"];
+      var FRAMINGS = { count: "count", gap: "gap" };
+      var isOn = (value) => value === true || value === "true";
+      var unusedByC24 = (name, { framing = "end", bidirectional = false }) => isOn(bidirectional) ? UNIDIRECTIONAL.includes(name) : Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing;
       var applies = (type, name, config) => {
+        if (type === "melsec-c24") return !unusedByC24(name, config);
         if (type === "plc-line") return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || "serial");
         return type !== "chino-regulator" || !unused(config.mode || "read", name);
       };
@@ -165,14 +224,23 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var SHARED = "@nxline/node-red-serial-plc/plc-line:";
       var t = (key, values) => RED._(`${SHARED}${key}`, values);
-      var errorText = (error) => {
-        const text = String(error.message || error);
-        if (!error.code || !error.details) return text;
-        const translated = RED._(`${SHARED}error.${error.code}`, { ...error.details, defaultValue: text });
+      var translate = (key, values, text) => {
+        const translated = RED._(`${SHARED}${key}`, { ...values, defaultValue: text });
         return /__\w+__/.test(translated) ? text : translated;
       };
+      var errorText = (error) => {
+        const text = String(error.message || error);
+        const { code, details } = error;
+        if (!code || !details) return text;
+        const { why, notation, reason } = details;
+        const values = why ? { ...details, reason: translate(`why.${why}`, details, reason) } : details;
+        const general = translate(`error.${code}`, values, text);
+        return notation ? translate(`error.${code}_${notation.toUpperCase()}`, values, general) : general;
+      };
+      var causeText = ({ code, text, remedy, details }) => translate(`cause.${code}`, details || {}, `${capital(text)}. ${remedy}`);
+      var capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
       var reasonOf = (error) => errorText(error.cause && error.cause.code ? error.cause : error);
-      module.exports = { t, errorText, reasonOf };
+      module.exports = { t, capital, causeText, errorText, reasonOf };
     }
   });
 
@@ -312,7 +380,7 @@ var nxlineSerialPlc = (() => {
         // --- guards: refused before anything is sent
         READ_ONLY: [
           "{item} was not written: station {station} is read-only here",
-          'Set Access to "read and write" in the configuration of the PLC.'
+          'Set Access to "read and write" in the configuration of the device.'
         ],
         NOT_WRITABLE: [
           "{item} was not written: {reason}",
@@ -416,7 +484,10 @@ var nxlineSerialPlc = (() => {
           "Read it back before you write again."
         ],
         NOT_A_VALUE: ["{item} cannot be read as {type}: {reason}", "Check the data type and the word order of the item."],
-        VERIFY_FAILED: ["{item} reads {got} after {expected} was written", "The program of the PLC may overwrite it."],
+        VERIFY_FAILED: [
+          "{item} reads {got} after {expected} was written",
+          "The program of the PLC, or the device itself, may overwrite it."
+        ],
         // --- the line
         QUEUE_FULL: ["the queue of {line} is full ({most} requests)", "Poll less often, or fewer items."],
         DEADLINE: [
@@ -480,7 +551,7 @@ var nxlineSerialPlc = (() => {
         ],
         DUPLICATE_STATION: [
           "{owner} and {other} are both station {station} of {line}",
-          "Use one configuration for one PLC, or correct the number."
+          "Use one configuration for one device, or correct the number."
         ],
         // --- the simulator
         SIM_DEADLOCK: ["nothing can happen any more, but this is still open: {open}", "Report it with the seed of the run."],
@@ -1359,7 +1430,7 @@ var nxlineSerialPlc = (() => {
         const reason = name.startsWith("string") ? `write string[n] with n = 1 to ${MOST_STRING} bytes` : "there is no such type";
         throw new PlcError("BAD_TYPE", { type: String(text), reason, known: TYPE_NAMES.join(", ") });
       };
-      module.exports = { TYPE_NAMES, parseType, round };
+      module.exports = { parseType, round };
     }
   });
 
@@ -1828,7 +1899,7 @@ var nxlineSerialPlc = (() => {
         });
         return [...own.map(ownRequest), ...shared.map(sharedRequest)];
       };
-      module.exports = { FRAME_COST, LAST_MIXED, planReads };
+      module.exports = { LAST_MIXED, planReads };
     }
   });
 
@@ -2153,7 +2224,7 @@ var nxlineSerialPlc = (() => {
         if (typeof text === "number") throw bad(text, 'a number loses its zeros; write the address in quotes, as in "010197"');
         if (typeof text !== "string") throw bad("", "it is not text");
         const clean = text.trim();
-        if (clean === "") throw bad(text, "it is empty");
+        if (clean === "") throw bad(text, "it is empty", { why: "empty" });
         if (clean.length > MOST_CHARACTERS)
           throw bad(`${clean.slice(0, 20)}…`, `it has more than ${MOST_CHARACTERS} characters`);
         const [first, last, more] = clean.split(/\s*\.\.\s*/);
@@ -2167,7 +2238,7 @@ var nxlineSerialPlc = (() => {
         if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a register");
         if (from.style !== to.style) throw bad(clean, "both ends must be written in the same way");
         const count = to.address - from.address + 1;
-        if (count < 1) throw bad(clean, "the range runs backwards");
+        if (count < 1) throw bad(clean, "the range runs backwards", { why: "backwards" });
         if (count > MOST_RANGE) {
           const reason = "the range is too long";
           throw new PlcError("BAD_COUNT", { count, unit: `${from.kind}s`, reason, least: 1, most: MOST_RANGE });
@@ -2183,21 +2254,26 @@ var nxlineSerialPlc = (() => {
           return place(rowOf(name), Number(digits2), { bit: bit2, whole, style: "explicit", first: 0 });
         }
         const found = PANEL.exec(clean);
-        if (!found) throw bad(whole, part === "" ? "one end of the range is missing" : `it is not ${FORMS}`);
+        if (!found)
+          throw part === "" ? bad(whole, "one end of the range is missing") : bad(whole, `it is not ${FORMS}`, { why: "form" });
         const [, digits, bit] = found;
-        if (digits.length !== 5 && digits.length !== 6) throw bad(whole, digitsReason(digits));
+        if (digits.length !== 5 && digits.length !== 6) throw wrongDigits(whole, digits);
         const row = byDigit.get(digits[0]);
         if (!row)
           throw bad(
             whole,
-            `the first digit is ${digits[0]}, not 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)`
+            `the first digit is ${digits[0]}, not 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)`,
+            { why: "firstDigit", digit: digits[0] }
           );
         return place(row, Number(digits.slice(1)), { bit, whole, style: "panel", first: addressMode === "0-base" ? 0 : 1 });
       }
-      var digitsReason = (digits) => {
-        const count = digits.length === 1 ? "1 digit" : `${digits.length} digits`;
-        const hint = digits.length < 5 ? `; a zero in front may have been lost, as in ${digits.padStart(6, "0")}` : "";
-        return `it has ${count} instead of 6 or 5${hint}`;
+      var wrongDigits = (whole, digits) => {
+        const { length } = digits;
+        const reason = `it has ${length === 1 ? "1 digit" : `${length} digits`} instead of 6 or 5`;
+        if (length > 5) return bad(whole, reason, { why: "digits", digits: length });
+        const padded = digits.padStart(6, "0");
+        const hint = `; a zero in front may have been lost, as in ${padded}`;
+        return bad(whole, reason + hint, { why: "zeroLost", digits: length, padded });
       };
       function place(row, number, { bit, whole, style, first }) {
         const wire = number - first;
@@ -2206,17 +2282,19 @@ var nxlineSerialPlc = (() => {
           throw new PlcError("OUT_OF_AREA", {
             address: whole,
             area: `the table of ${row.name}s`,
-            range: `the numbers ${numbers}`
+            range: `the numbers ${numbers}`,
+            notation: "modbus",
+            numbers
           });
         }
         if (bit === void 0) return { kind: row.kind, address: row.base + wire, row, style };
-        if (row.kind === "bit") throw bad(whole, `a ${row.name} is a bit: nothing follows its number`);
+        if (row.kind === "bit") throw bad(whole, `a ${row.name} is a bit: nothing follows its number`, { why: "bitOfBit" });
         return { kind: "bit", address: (row.base + wire) * 16 + bitOf(bit, whole), row, style };
       }
       function bitOf(digits, whole) {
         if (digits.length !== 2) {
           const hint = digits.length === 1 ? `: .${digits} could be .0${digits} or .${digits}0` : "";
-          throw bad(whole, `a bit of a register has two digits, .00 to .15${hint}`);
+          throw bad(whole, `a bit of a register has two digits, .00 to .15${hint}`, { why: "bitDigits" });
         }
         if (Number(digits) > 15) throw new PlcError("BAD_BIT", { address: whole, bit: Number(digits) });
         return Number(digits);
@@ -2278,7 +2356,7 @@ var nxlineSerialPlc = (() => {
       }
       var spanOf = (first, last) => first === last ? `wire address ${first} (${hex(first)}h)` : `wire addresses ${first}–${last} (${hex(first)}h–${hex(last)}h)`;
       var hex = (value, digits = 4) => value.toString(16).toUpperCase().padStart(digits, "0");
-      var bad = (address, reason) => new PlcError("BAD_ADDRESS", { address: String(address), reason });
+      var bad = (address, reason, more = {}) => new PlcError("BAD_ADDRESS", { address: String(address), reason, notation: "modbus", ...more });
       module.exports = { TABLES, describeAddress, formatAddress, parseAddress, placeOf, spanOf };
     }
   });
@@ -2571,7 +2649,8 @@ var nxlineSerialPlc = (() => {
         const row = PROPERTIES[type][name];
         if (isVariable(value)) return true;
         const { problem } = readProperty(row, value);
-        if (problem) return t(`problem.${problem}`, { allowed: allowed(row) });
+        if (problem)
+          return t(`problem.${problem}`, { allowed: allowed(row).replace(/^(\d+) to (\d+)/, `$1${t("editor.to")}$2`) });
         const more = MORE[type] && MORE[type][name];
         return more && (row.kind === "list" || !isEmpty(value)) ? more(node, value) : true;
       };
@@ -2944,7 +3023,13 @@ var nxlineSerialPlc = (() => {
         const names = new Set(present.map(({ name }) => name));
         return TEMPLATE.filter(({ name }) => !names.has(name)).map((row) => ({ ...row, label: t(row.label), address: "" }));
       };
-      var addTemplate = (list) => missingRows(rowsOf(list)).forEach((row) => list.editableList("addItem", row));
+      var addTemplate = (list) => {
+        missingRows(rowsOf(list)).forEach((row) => list.editableList("addItem", row));
+        const empty = list.find(".nxline-address").filter((_, each) => each.value === "");
+        if (empty.length === 0) return;
+        empty[0].closest("li").scrollIntoView({ block: "nearest" });
+        empty[0].focus();
+      };
       var doubtOf = (rows, notation) => {
         const found = csvWarnings(rows, notation).map(({ name, text }) => `${name}: ${text}`);
         if (found.length === 0) return "";
@@ -2976,11 +3061,11 @@ var nxlineSerialPlc = (() => {
   var require_device = __commonJS({
     "scripts/editor/device.js"(exports, module) {
       "use strict";
-      var { done, open } = require_check();
+      var { check, done, open } = require_check();
       var { exportTags, importTags, tagTable } = require_tags2();
       var { rowsOf } = require_table();
       var { fillDefaults, tabs } = require_widgets();
-      var { errorText, t } = require_texts();
+      var { capital, causeText, errorText, t } = require_texts();
       var PREFIX = "node-config-input-";
       var field = (name) => $(`#${PREFIX}${name}`);
       var value = (name) => field(name).val();
@@ -3008,17 +3093,18 @@ var nxlineSerialPlc = (() => {
         const names = Object.keys(line._def.defaults);
         return { id, ...Object.fromEntries(names.map((name) => [name, line[name]])) };
       };
-      var failure = ({ reached, error }) => {
+      var withoutRemedy = (text) => text.split(/(?<=\.) (?=\S)/)[0];
+      var failure = ({ reached, error }, short) => {
         const { deployFirst, value: path } = error.details || {};
         if (deployFirst) return t("test.deployFirst", { path });
-        const text = errorText(error).replace(/^(?:the|station)\b/, capital);
-        return reached ? t("test.reached", { text: errorText(error) }) : t("test.failed", { text });
+        const text = short ? withoutRemedy(errorText(error)) : errorText(error);
+        return reached ? t("test.reached", { text }) : t("test.failed", { text: text.replace(/^(?:the|station)\b/, capital) });
       };
-      var capital = (text) => text[0].toUpperCase() + text.slice(1);
       var sentences = (answer) => {
-        const { cause } = answer;
-        const likely = cause ? [t("test.cause", { text: `${capital(cause.text)}. ${cause.remedy}` })] : [];
-        return [answer.ok ? t("test.ok", answer) : failure(answer), ...likely];
+        const { ok, value: value2, cause, error } = answer;
+        if (ok) return [t(value2 === null ? "test.noItem" : "test.ok", answer)];
+        if (!cause || cause.code === error.code) return [failure(answer, false)];
+        return [failure(answer, true), t("test.cause", { text: causeText(cause) })];
       };
       var showAnswer = (block, lines, colour) => block.show().empty().append(lines.map((line) => $("<div>").text(line))).css({ borderLeft: `4px solid var(${colour})` });
       var httpError = (xhr) => {
@@ -3027,19 +3113,33 @@ var nxlineSerialPlc = (() => {
         const message = t(xhr.status === 401 || xhr.status === 403 ? "test.denied" : "test.unreachable");
         return { ok: false, error: { message } };
       };
-      var runTest = ({ part, list, device, url }, node) => {
+      var wrongFields = ({ device }, node) => {
+        const { type, ...settings } = device();
+        return Object.entries(settings).map(([name, given]) => [name, field(name).length > 0 ? check(type, name).call(node, given) : true]).filter(([, verdict]) => typeof verdict === "string").map(([name, verdict]) => `${$(`label[for="${PREFIX}${name}"]`).first().text().trim()}: ${verdict}`);
+      };
+      var runTest = (own, node) => {
+        const { part, list, device, url } = own;
         const button = part("test").prop("disabled", true);
         const result = part("test-result");
-        showAnswer(result, [t("test.running")], "--red-ui-secondary-text-color");
-        const finish = (answer) => {
+        const finish = (lines, colour = "--red-ui-text-color-error") => {
           button.prop("disabled", false);
-          showAnswer(result, sentences(answer), answer.ok ? "--red-ui-text-color-success" : "--red-ui-text-color-error");
+          showAnswer(result, lines, colour);
         };
+        if (device().type === "chino-config" && Number(value("station") || NaN) === 0) return finish([t("test.broadcast")]);
+        showAnswer(result, [t("test.running")], "--red-ui-secondary-text-color");
         const data = JSON.stringify({
           plc: { id: node.id, ...device(), tags: tagRows(list) },
-          line: lineProperties(value("line"))
+          line: lineProperties(value("line")),
+          // one short read more, and RTU where ASCII is set, or the other way round, is told
+          tryOtherModes: device().type === "chino-config"
         });
-        $.ajax({ url, type: "POST", contentType: "application/json", data }).then(finish, (xhr) => finish(httpError(xhr)));
+        $.ajax({ url, type: "POST", contentType: "application/json", data }).then(
+          (answer) => finish(sentences(answer), answer.ok ? "--red-ui-text-color-success" : void 0),
+          (xhr) => {
+            const wrong = xhr.status === 400 ? wrongFields(own, node) : [];
+            finish(wrong.length > 0 ? wrong : sentences(httpError(xhr)));
+          }
+        );
       };
       var TABS = {
         plc: "tab.plc",
@@ -3096,7 +3196,7 @@ var nxlineSerialPlc = (() => {
           }
         };
       };
-      module.exports = { deviceDialog, field, fieldValue, value };
+      module.exports = { deviceDialog, field, fieldValue, sentences, value };
     }
   });
 

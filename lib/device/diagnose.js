@@ -80,9 +80,12 @@ async function examine(test) {
   const late = lateness(lease, test.station)
   const since = clock.wall()
   const result = await ask(lease, given, test.choice)
+  const evidenceNow = () => evidenceOf(lease.line.trace(), { station: test.station, since, expected: given.protocol })
+  // later on the last query to the station may be one of somebody else who polls it
+  const { sent, sentAt, ms } = evidenceNow()
   if (result.code === 'TIMEOUT') await late.listen(clock, lease.line.memory(test.station).bound)
   late.stop()
-  const evidence = evidenceOf(lease.line.trace(), { station: test.station, since, expected: given.protocol })
+  const evidence = { ...evidenceNow(), sent, sentAt, ms }
   const waited = evidence.sentAt > 0 ? Math.max(0, Math.round(clock.wall() - evidence.sentAt)) : 0
   const seen = { result, late: late.event, waited, evidence }
   const ok = result.ok || (!chosen && PROOFS.has(result.code))

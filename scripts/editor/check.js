@@ -142,7 +142,8 @@ const verdict = (type, { name, node, value }) => {
   const row = PROPERTIES[type][name]
   if (isVariable(value)) return true
   const { problem } = readProperty(row, value)
-  if (problem) return t(`problem.${problem}`, { allowed: allowed(row) })
+  if (problem)
+    return t(`problem.${problem}`, { allowed: allowed(row).replace(/^(\d+) to (\d+)/, `$1${t('editor.to')}$2`) })
   const more = MORE[type] && MORE[type][name]
   return more && (row.kind === 'list' || !isEmpty(value)) ? more(node, value) : true
 }

@@ -1,9 +1,9 @@
 'use strict'
-const { done, open } = require('./check')
+const { check, done, open } = require('./check')
 const { exportTags, importTags, tagTable } = require('./tags')
 const { rowsOf } = require('./table')
 const { fillDefaults, tabs } = require('./widgets')
-const { errorText, t } = require('./texts')
+const { capital, causeText, errorText, t } = require('./texts')
 
 /** What the dialogs of nx-config and chino-config have in common: tags with their CSV files, what may be written, Test. */
 
@@ -45,21 +45,27 @@ const lineProperties = id => {
   return { id, ...Object.fromEntries(names.map(name => [name, line[name]])) }
 }
 
-const failure = ({ reached, error }) => {
+/** Without what to do about it: the cause knows better. */
+const withoutRemedy = text => text.split(/(?<=\.) (?=\S)/)[0]
+
+const failure = ({ reached, error }, short) => {
   const { deployFirst, value: path } = error.details || {}
   if (deployFirst) return t('test.deployFirst', { path })
+  const text = short ? withoutRemedy(errorText(error)) : errorText(error)
   // an error's text is made to follow a name; here it is the sentence
-  const text = errorText(error).replace(/^(?:the|station)\b/, capital)
-  return reached ? t('test.reached', { text: errorText(error) }) : t('test.failed', { text })
+  return reached ? t('test.reached', { text }) : t('test.failed', { text: text.replace(/^(?:the|station)\b/, capital) })
 }
 
-const capital = text => text[0].toUpperCase() + text.slice(1)
-
-/** What the test says: a sentence, and the likely cause if it found one. */
+/**
+ * What the test says: a sentence, and the likely cause if it found one that says more.
+ * @param {any} answer of the server
+ * @returns {string[]}
+ */
 const sentences = answer => {
-  const { cause } = answer
-  const likely = cause ? [t('test.cause', { text: `${capital(cause.text)}. ${cause.remedy}` })] : []
-  return [answer.ok ? t('test.ok', answer) : failure(answer), ...likely]
+  const { ok, value, cause, error } = answer
+  if (ok) return [t(value === null ? 'test.noItem' : 'test.ok', answer)]
+  if (!cause || cause.code === error.code) return [failure(answer, false)]
+  return [failure(answer, true), t('test.cause', { text: causeText(cause) })]
 }
 
 const showAnswer = (block, lines, colour) =>
@@ -76,19 +82,38 @@ const httpError = xhr => {
   return { ok: false, error: { message } }
 }
 
-const runTest = ({ part, list, device, url }, node) => {
+/** What the fields themselves say is wrong, each by its label; a server that refuses them says it in English. */
+const wrongFields = ({ device }, node) => {
+  const { type, ...settings } = device()
+  return Object.entries(settings)
+    .map(([name, given]) => [name, field(name).length > 0 ? check(type, name).call(node, given) : true])
+    .filter(([, verdict]) => typeof verdict === 'string')
+    .map(([name, verdict]) => `${$(`label[for="${PREFIX}${name}"]`).first().text().trim()}: ${verdict}`)
+}
+
+const runTest = (own, node) => {
+  const { part, list, device, url } = own
   const button = part('test').prop('disabled', true)
   const result = part('test-result')
-  showAnswer(result, [t('test.running')], '--red-ui-secondary-text-color')
-  const finish = answer => {
+  const finish = (lines, colour = '--red-ui-text-color-error') => {
     button.prop('disabled', false)
-    showAnswer(result, sentences(answer), answer.ok ? '--red-ui-text-color-success' : '--red-ui-text-color-error')
+    showAnswer(result, lines, colour)
   }
+  if (device().type === 'chino-config' && Number(value('station') || NaN) === 0) return finish([t('test.broadcast')])
+  showAnswer(result, [t('test.running')], '--red-ui-secondary-text-color')
   const data = JSON.stringify({
     plc: { id: node.id, ...device(), tags: tagRows(list) },
-    line: lineProperties(value('line'))
+    line: lineProperties(value('line')),
+    // one short read more, and RTU where ASCII is set, or the other way round, is told
+    tryOtherModes: device().type === 'chino-config'
   })
-  $.ajax({ url, type: 'POST', contentType: 'application/json', data }).then(finish, xhr => finish(httpError(xhr)))
+  $.ajax({ url, type: 'POST', contentType: 'application/json', data }).then(
+    answer => finish(sentences(answer), answer.ok ? '--red-ui-text-color-success' : undefined),
+    xhr => {
+      const wrong = xhr.status === 400 ? wrongFields(own, node) : []
+      finish(wrong.length > 0 ? wrong : sentences(httpError(xhr)))
+    }
+  )
 }
 
 // --- the dialog
@@ -167,4 +192,4 @@ const deviceDialog = (name, { type, pages, fields, more = () => ({}), judged }) 
   }
 }
 
-module.exports = { deviceDialog, field, fieldValue, value }
+module.exports = { deviceDialog, field, fieldValue, sentences, value }

@@ -124,7 +124,14 @@ const missingRows = present => {
 }
 
 /** Adds the template's rows; the table may begin with an empty one. */
-const addTemplate = list => missingRows(rowsOf(list)).forEach(row => list.editableList('addItem', row))
+const addTemplate = list => {
+  missingRows(rowsOf(list)).forEach(row => list.editableList('addItem', row))
+  // the list has scrolled to its end: begin with the first one to be filled in
+  const empty = list.find('.nxline-address').filter((_, each) => each.value === '')
+  if (empty.length === 0) return
+  empty[0].closest('li').scrollIntoView({ block: 'nearest' })
+  empty[0].focus()
+}
 
 /** What a spreadsheet may have eaten of the addresses of these rows; '' if nothing. */
 const doubtOf = (rows, notation) => {

@@ -2,9 +2,10 @@
 const assert = require('node:assert/strict')
 const fs = require('node:fs')
 const path = require('node:path')
+const { CAUSES } = require('../../lib/device/diagnosis/causes')
 const { CODES } = require('../../lib/error')
 const { statusOf } = require('../../nodes/status')
-const { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, lookUp } = require('./dialogs')
+const { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, loadDialogs, lookUp } = require('./dialogs')
 
 const ON_TABS = ['nx-read', 'nx-write', 'chino-regulator']
 
@@ -67,7 +68,7 @@ describe('locales', () => {
     for (const language of LANGUAGES) {
       it(`${type}, ${language}: every key that is used is there, and every key that is there is used`, () => {
         const used = type === 'plc-line' ? [...ownKeys(type), ...sharedKeys(), ...statusKeys()] : ownKeys(type)
-        const known = leaves(catalogue(language, type)).filter(key => !key.startsWith('error.'))
+        const known = leaves(catalogue(language, type)).filter(key => !/^(error|why|cause)\./.test(key))
         assert.deepEqual([...new Set(used)].sort(), known.sort())
       })
 
@@ -92,11 +93,54 @@ describe('locales', () => {
 
   it('errors in Korean have a row in the list of codes, and use its details', () => {
     const { error = {} } = catalogue('ko', 'plc-line')
-    for (const [code, text] of Object.entries(error)) {
+    for (const [code, text] of Object.entries(error).filter(([key]) => !key.endsWith('_MODBUS'))) {
       assert.ok(CODES[code], code)
       for (const [, name] of text.matchAll(/__(\w+)__/g))
         assert.match(CODES[code].join(' '), new RegExp(`\\{${name}\\}`), code)
     }
+  })
+
+  it('each likely cause is there in Korean, and uses its details', () => {
+    const { cause } = catalogue('ko', 'plc-line')
+    assert.deepEqual(Object.keys(cause).sort(), Object.keys(CAUSES).sort())
+    for (const [code, text] of Object.entries(cause)) {
+      for (const [, name] of text.matchAll(/__(\w+)__/g)) {
+        assert.match(CAUSES[code].flat().join(' '), new RegExp(`\\{${name}\\}`), code)
+      }
+    }
+  })
+
+  const wrongAddresses = {
+    empty: '',
+    backwards: '400002..400001',
+    form: 'M0',
+    digits: '4000011',
+    zeroLost: '1001',
+    firstDigit: '201001',
+    bitOfBit: '001001.05',
+    bitDigits: '401001.1',
+    outside: '465537'
+  }
+  for (const [why, address] of Object.entries(wrongAddresses)) {
+    it(`a wrong address of a regulator is explained in the language, without the notation of PLCs: ${why}`, () => {
+      const said = LANGUAGES.map(language => {
+        const { types } = loadDialogs({ language })
+        const { validate } = types['chino-config'].defaults.writableRanges
+        return validate.call({ id: 'z' }, address || '..')
+      })
+      for (const text of said) assert.doesNotMatch(text, /M0\.\.|K127|__/)
+      if (address) assert.doesNotMatch(said[1].replaceAll(address, ''), /[a-z]{4,}(?!32|\d)\b/, said[1])
+    })
+  }
+
+  it('no reason in Korean is too many', () => {
+    const { why } = catalogue('ko', 'plc-line')
+    assert.deepEqual(
+      Object.keys(why).sort(),
+      Object.keys(wrongAddresses)
+        .filter(key => key !== 'outside')
+        .sort()
+    )
   })
 
   it('a status is shorter than 20 characters in both languages, with SIM before it', () => {

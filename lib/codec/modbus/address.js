@@ -57,7 +57,7 @@ function parseAddress(text, { addressMode = '1-base' } = {}) {
   if (typeof text === 'number') throw bad(text, 'a number loses its zeros; write the address in quotes, as in "010197"')
   if (typeof text !== 'string') throw bad('', 'it is not text')
   const clean = text.trim()
-  if (clean === '') throw bad(text, 'it is empty')
+  if (clean === '') throw bad(text, 'it is empty', { why: 'empty' })
   if (clean.length > MOST_CHARACTERS)
     throw bad(`${clean.slice(0, 20)}…`, `it has more than ${MOST_CHARACTERS} characters`)
   const [first, last, more] = clean.split(/\s*\.\.\s*/)
@@ -72,7 +72,7 @@ function range(from, to, { clean, addressMode }) {
   if (from.kind !== to.kind) throw bad(clean, 'one end is a bit, the other a register')
   if (from.style !== to.style) throw bad(clean, 'both ends must be written in the same way')
   const count = to.address - from.address + 1
-  if (count < 1) throw bad(clean, 'the range runs backwards')
+  if (count < 1) throw bad(clean, 'the range runs backwards', { why: 'backwards' })
   if (count > MOST_RANGE) {
     const reason = 'the range is too long'
     throw new PlcError('BAD_COUNT', { count, unit: `${from.kind}s`, reason, least: 1, most: MOST_RANGE })
@@ -90,22 +90,29 @@ function parseOne(part, whole, addressMode) {
     return place(rowOf(name), Number(digits), { bit, whole, style: 'explicit', first: 0 })
   }
   const found = PANEL.exec(clean)
-  if (!found) throw bad(whole, part === '' ? 'one end of the range is missing' : `it is not ${FORMS}`)
+  if (!found)
+    throw part === ''
+      ? bad(whole, 'one end of the range is missing')
+      : bad(whole, `it is not ${FORMS}`, { why: 'form' })
   const [, digits, bit] = found
-  if (digits.length !== 5 && digits.length !== 6) throw bad(whole, digitsReason(digits))
+  if (digits.length !== 5 && digits.length !== 6) throw wrongDigits(whole, digits)
   const row = byDigit.get(digits[0])
   if (!row)
     throw bad(
       whole,
-      `the first digit is ${digits[0]}, not 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)`
+      `the first digit is ${digits[0]}, not 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)`,
+      { why: 'firstDigit', digit: digits[0] }
     )
   return place(row, Number(digits.slice(1)), { bit, whole, style: 'panel', first: addressMode === '0-base' ? 0 : 1 })
 }
 
-const digitsReason = digits => {
-  const count = digits.length === 1 ? '1 digit' : `${digits.length} digits`
-  const hint = digits.length < 5 ? `; a zero in front may have been lost, as in ${digits.padStart(6, '0')}` : ''
-  return `it has ${count} instead of 6 or 5${hint}`
+const wrongDigits = (whole, digits) => {
+  const { length } = digits
+  const reason = `it has ${length === 1 ? '1 digit' : `${length} digits`} instead of 6 or 5`
+  if (length > 5) return bad(whole, reason, { why: 'digits', digits: length })
+  const padded = digits.padStart(6, '0')
+  const hint = `; a zero in front may have been lost, as in ${padded}`
+  return bad(whole, reason + hint, { why: 'zeroLost', digits: length, padded })
 }
 
 function place(row, number, { bit, whole, style, first }) {
@@ -115,18 +122,20 @@ function place(row, number, { bit, whole, style, first }) {
     throw new PlcError('OUT_OF_AREA', {
       address: whole,
       area: `the table of ${row.name}s`,
-      range: `the numbers ${numbers}`
+      range: `the numbers ${numbers}`,
+      notation: 'modbus',
+      numbers
     })
   }
   if (bit === undefined) return { kind: row.kind, address: row.base + wire, row, style }
-  if (row.kind === 'bit') throw bad(whole, `a ${row.name} is a bit: nothing follows its number`)
+  if (row.kind === 'bit') throw bad(whole, `a ${row.name} is a bit: nothing follows its number`, { why: 'bitOfBit' })
   return { kind: 'bit', address: (row.base + wire) * 16 + bitOf(bit, whole), row, style }
 }
 
 function bitOf(digits, whole) {
   if (digits.length !== 2) {
     const hint = digits.length === 1 ? `: .${digits} could be .0${digits} or .${digits}0` : ''
-    throw bad(whole, `a bit of a register has two digits, .00 to .15${hint}`)
+    throw bad(whole, `a bit of a register has two digits, .00 to .15${hint}`, { why: 'bitDigits' })
   }
   if (Number(digits) > 15) throw new PlcError('BAD_BIT', { address: whole, bit: Number(digits) })
   return Number(digits)
@@ -222,6 +231,8 @@ const spanOf = (first, last) =>
     : `wire addresses ${first}–${last} (${hex(first)}h–${hex(last)}h)`
 
 const hex = (value, digits = 4) => value.toString(16).toUpperCase().padStart(digits, '0')
-const bad = (address, reason) => new PlcError('BAD_ADDRESS', { address: String(address), reason })
+/** `why` and its values: by these the dialogs say the reason in another language. */
+const bad = (address, reason, more = {}) =>
+  new PlcError('BAD_ADDRESS', { address: String(address), reason, notation: 'modbus', ...more })
 
 module.exports = { TABLES, describeAddress, formatAddress, parseAddress, placeOf, spanOf }

@@ -4,7 +4,7 @@ const { CODES, isRefusal } = require('../../error')
 /**
  * Likely causes, from what was seen. Pure. What is no row here is an error of the line or of the station by its own code (docs/errors.md).
  *
- * @typedef {{ code: string, text: string, remedy: string }} Cause
+ * @typedef {{ code: string, text: string, remedy: string, details?: Record<string, any> }} Cause `details`: what was filled into the texts
  * @typedef {object} Facts
  * @property {string} code of the read's error
  * @property {string} text of the read's error
@@ -129,7 +129,12 @@ const fill = (text, facts) => text.replace(/\{(\w+)\}/g, (_, name) => String(fac
  * @param {Record<string, any>} facts for its text
  * @returns {Cause}
  */
-const cause = (code, facts) => ({ code, text: fill(CAUSES[code][0], facts), remedy: fill(CAUSES[code][1], facts) })
+const cause = (code, facts) => {
+  const [text, remedy] = CAUSES[code]
+  const names = [...(text + remedy).matchAll(/\{(\w+)\}/g)].map(([, name]) => name)
+  const details = Object.fromEntries(names.map(name => [name, facts[name] ?? '']))
+  return { code, text: fill(text, facts), remedy: fill(remedy, facts), details }
+}
 
 /** An error by its own name. @param {string} code @param {string} text its message @returns {Cause} */
 const ownCause = (code, text) => {

@@ -3101,8 +3101,8 @@ var nxlineSerialPlc = (() => {
         return reached ? t("test.reached", { text }) : t("test.failed", { text: text.replace(/^(?:the|station)\b/, capital) });
       };
       var sentences = (answer) => {
-        const { ok, value: value2, cause, error } = answer;
-        if (ok) return [t(value2 === null ? "test.noItem" : "test.ok", answer)];
+        const { ok, cause, error } = answer;
+        if (ok) return [t(answer.value === null ? "test.noItem" : "test.ok", answer)];
         if (!cause || cause.code === error.code) return [failure(answer, false)];
         return [failure(answer, true), t("test.cause", { text: causeText(cause) })];
       };

@@ -62,8 +62,8 @@ const failure = ({ reached, error }, short) => {
  * @returns {string[]}
  */
 const sentences = answer => {
-  const { ok, value, cause, error } = answer
-  if (ok) return [t(value === null ? 'test.noItem' : 'test.ok', answer)]
+  const { ok, cause, error } = answer
+  if (ok) return [t(answer.value === null ? 'test.noItem' : 'test.ok', answer)]
   if (!cause || cause.code === error.code) return [failure(answer, false)]
   return [failure(answer, true), t('test.cause', { text: causeText(cause) })]
 }

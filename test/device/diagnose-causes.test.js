@@ -154,6 +154,9 @@ describe('diagnose: the likely cause, by the bytes that were seen', () => {
       const { cause, seen } = await run({ item: what === 'NX' ? 'M0.0' : 'co0' })
       poller.close()
       assert.deepEqual([seen.code, cause.code], ['TIMEOUT', 'UNSTEADY'])
+      // the query that is told is ours, and its time, though polls went out after it
+      assert.equal(isWord(Buffer.from(seen.sent, 'hex')), false)
+      assert.ok(seen.waited >= 200, String(seen.waited))
       await clock.run(lease.release())
     })
   }

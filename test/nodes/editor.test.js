@@ -1,6 +1,9 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { describeAddress } = require('../../lib/codec/modbus/address')
+const { cause } = require('../../lib/device/diagnosis/causes')
+const { PlcError } = require('../../lib/error')
+const { sentences } = require('../../scripts/editor/device')
 const { outputRole } = require('../../scripts/editor/flow')
 const { describe: describeItem, notationWithTags, parseItem } = require('../../scripts/editor/model')
 const { areaFault } = require('../../scripts/editor/areas')
@@ -187,5 +190,55 @@ describe('what goes out for an address of a regulator', () => {
     assert.deepEqual(roles('write'), ['confirmed', 'failed', undefined])
     assert.deepEqual(roles('both'), ['values', 'confirmed', 'failed'])
     assert.deepEqual(roles('${MODE}'), roles('read'))
+  })
+})
+
+describe('what Test says', () => {
+  const saysIn = (language, answer) => {
+    const before = globalThis.RED
+    globalThis.RED = { _: translator(language) }
+    try {
+      return sentences(answer).join('\n')
+    } finally {
+      globalThis.RED = before
+    }
+  }
+  const says = answer => saysIn('en-US', answer)
+  const failure = (code, details, more) => {
+    const { message } = new PlcError(code, details)
+    return { ok: false, error: { code, message, details }, ...more }
+  }
+  const silent = (found, facts) => failure('TIMEOUT', { station: 12, timeout: 400 }, { cause: cause(found, facts) })
+
+  it('the value', () =>
+    assert.equal(
+      says({ ok: true, station: 11, ms: 7, item: 'hr0', value: 35 }),
+      'Station 11 answers in 7 ms: hr0 = 35.'
+    ))
+
+  it('connected, but it does not have what nobody asked for', () => {
+    const said = says({ ok: true, station: 11, ms: 7, item: 'hr0', value: null })
+    assert.match(said, /^Connected: station 11 answers, but it does not have hr0\./)
+  })
+
+  it('the cause brings its own remedy, the general one is left out', () => {
+    const said = says(silent('NO_BYTES', { station: 12, waited: 1408, hint: '' }))
+    const [first, likely, ...more] = said.split('\n')
+    assert.equal(first, 'Station 12 did not answer within 400 ms.')
+    assert.match(likely, /^Likely cause: Not one byte came back from station 12 within 1408 ms\. Check power/)
+    assert.deepEqual(more, [])
+  })
+
+  it('a cause that is the error itself is said once', () => {
+    const answer = failure('PORT_NOT_FOUND', { path: '/dev/ttyUSB7' })
+    const { message, code } = answer.error
+    const said = says({ ...answer, cause: { code, text: message.split('. ')[0], remedy: 'x' } })
+    assert.equal(said, message.replace(/^the/, 'The'))
+  })
+
+  it('in Korean all of it', () => {
+    const said = saysIn('ko', silent('OTHER_MODE', { station: 12, found: 'RTU', mode: 'ASCII', bits: '' }))
+    assert.match(said, /^국번 12.*\n가능한 원인: MODBUS RTU/)
+    assert.doesNotMatch(said, /[a-z]{3,}/)
   })
 })

@@ -3,7 +3,9 @@
 /** What docs/architecture.md names is there, and what programs can hear or count stands in it. */
 
 const assert = require('node:assert/strict')
+const lib = require('../lib')
 const { Stats } = require('../lib/line/stats.js')
+const sim = require('../lib/sim')
 const { filesBelow, read } = require('./support/source.js')
 
 const page = () => read('docs/architecture.md')
@@ -19,6 +21,12 @@ describe('docs/architecture.md', () => {
     const own = new Set(['NAME', 'unreadable'])
     const wrong = names(page()).filter(name => name.length > 3 && !own.has(name.split('.')[0]) && !text.includes(name))
     assert.deepEqual(wrong, [])
+  })
+
+  it('has whatever the door offers; docs/simulator.md what that of the simulator does', () => {
+    const missing = (door, text) => Object.keys(door).filter(name => !new RegExp(`\\b${name}\\b`).test(text))
+    assert.deepEqual(missing(lib, page()), [])
+    assert.deepEqual(missing(sim, read('docs/simulator.md')), [])
   })
 
   it('has a row for each event of a line, and for nothing else', () => {

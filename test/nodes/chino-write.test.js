@@ -317,6 +317,17 @@ describe('chino-regulator, writing', () => {
       assert.equal(seen.at(-1).fill, 'yellow')
     })
 
+    it('on a simulated line it is no station, and reaches those that are', async () => {
+      const line = { id: 'line', type: 'plc-line', transport: 'simulated' }
+      const { failed, caught } = await load([line, zone(), all(), sender({ onFailure: 'output' })])
+      const heater = helper.getNode('line').wire.find(1)
+      helper.getNode('regulator').receive({ payload: 77 })
+      await until(() => failed.length + caught.length > 0)
+      assert.equal(failed[0]?.write.code, 'BROADCAST_UNCONFIRMED')
+      await until(() => heater.get('400002') === 77, 'the broadcast')
+      assert.equal(helper.getNode('line').wire.find(0), undefined)
+    })
+
     for (const [what, config, more, code] of [
       ['not allowed', {}, { broadcast: false }, 'BROADCAST_REFUSED'],
       ['reading', { mode: 'read', items: ['400001'] }, {}, 'BROADCAST_REFUSED'],

@@ -25,3 +25,48 @@ describe('docs/nodes.md', () => {
     })
   }
 })
+
+// the words of the driver's settings in the manual of the touch panel
+const PANEL = {
+  protocol: 'Protocol',
+  station: 'Slave Equipment Address No',
+  timeout: 'TimeOut',
+  sendWait: 'SendWait',
+  addressMode: 'Address Mode',
+  coilRead: 'Max Read Count',
+  coilUnit: 'ReadBitUnit',
+  coilFunction: 'Write Function',
+  coilWrite: 'Max Write Count',
+  discreteRead: 'Max Read Count',
+  discreteUnit: 'ReadBitUnit',
+  inputRead: 'Read Boundary',
+  holdingRead: 'Max Read Count',
+  holdingFunction: 'Write Function',
+  holdingWrite: 'Max Write Count'
+}
+
+describe('every setting of the panel, by its word there', () => {
+  it('docs/chino.md: each with its default', () => {
+    const page = fs.readFileSync(path.join(ROOT, 'docs', 'chino.md'), 'utf8')
+    const rows = page.split('\n## Settings\n')[1].split('\n## ')[0].split('\n')
+    for (const [name, word] of Object.entries(PANEL)) {
+      const row = rows.find(line => line.startsWith(`| \`${name}\` |`))
+      assert.ok(row?.split('|')[3].includes(word), `${name}: ${row}`)
+      const { fallback, needed } = PROPERTIES['chino-config'][name]
+      assert.equal(row.split('|')[2].replaceAll('`', '').trim(), needed ? 'needed' : String(fallback), name)
+    }
+  })
+
+  for (const language of ['en-US', 'ko']) {
+    it(`the help, ${language}`, () => {
+      const file = path.join(ROOT, 'nodes', 'locales', language, 'chino-config.html')
+      const help = fs
+        .readFileSync(file, 'utf8')
+        .replaceAll(/<[^>]+>/g, '')
+        .replaceAll(/\s+/g, ' ')
+      // but for the first one: a word like any other, translated
+      const words = Object.values(PANEL).slice(1)
+      for (const word of words) assert.ok(help.includes(word), word)
+    })
+  }
+})

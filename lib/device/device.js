@@ -143,7 +143,7 @@ class Device {
    * @param {{ priority?: number }} [options] PRIORITY.ASK (default) or PRIORITY.POLL; a poll leaves addresses that the
    *   station said it does not have alone for 30 s
    * @returns {Promise<import('./points').Result[]>} one per item, in order; what went wrong stands in the results
-   * @throws {PlcError} (rejects) only for what is wrong with the request: BAD_ITEMS, TOO_MANY, FRAME_TOO_LONG, and those of
+   * @throws {PlcError} (rejects) only for what is wrong with the request: BAD_ITEMS, TOO_MANY, FRAME_TOO_LONG (for all of them), and those of
    *   {@link Device.item}
    */
   async read(items, { priority = PRIORITY.ASK } = {}) {

@@ -1,5 +1,5 @@
 'use strict'
-const { isRefusal } = require('../error')
+const { PlcError, isRefusal } = require('../error')
 const { asPlcError } = require('./failure')
 
 /**
@@ -56,16 +56,34 @@ const wordFor = error => {
 /** The worst that an item's values met. */
 const WORST = ['unknown', 'failed', 'refused', 'notSent', 'confirmed']
 
+/** Nothing of such a value stands in the station. */
+const isUndone = ({ outcome, error }) =>
+  outcome === 'refused' || outcome === 'notSent' || (outcome === 'failed' && error?.code !== 'VERIFY_FAILED')
+
+/** An item of several frames, of which only the first ones were carried out: neither the old values stand there nor the new ones. */
+const partOf = (entry, own, { points, station }) => {
+  const written = own.filter(({ outcome }) => outcome === 'confirmed').length
+  if (written === 0 || !own.some(isUndone)) return null
+  const cause = own.find(({ error }) => error)?.error ?? points.find(({ error }) => error)?.error
+  const reason = `${written} of ${own.length} values were written, then ${cause?.code}`
+  return {
+    outcome: 'unknown',
+    error: new PlcError('WRITE_UNKNOWN', { station, item: plain(entry).item, reason, cause })
+  }
+}
+
 /**
  * @param {{ item: any, value: any, from: number, to: number }[]} entries with the places of their points
  * @param {{ outcome: string, error?: import('../error').PlcError }[]} points
+ * @param {number} station
  * @returns {Outcome}
  */
-const outcomeOf = (entries, points) => {
+const outcomeOf = (entries, points, station) => {
   const items = entries.map(entry => {
     const own = points.slice(entry.from, entry.to)
-    const worst = /** @type {any} */ (WORST.find(word => own.some(({ outcome }) => outcome === word)))
-    const error = own.find(({ outcome }) => outcome === worst)?.error
+    const part = partOf(entry, own, { points, station })
+    const worst = part?.outcome ?? /** @type {any} */ (WORST.find(word => own.some(({ outcome }) => outcome === word)))
+    const error = part?.error ?? own.find(({ outcome }) => outcome === worst)?.error
     const why = error ? { code: error.code, text: error.message } : {}
     return { ...plain(entry), outcome: worst, ...why }
   })

@@ -42,8 +42,8 @@ class Reader {
   /**
    * @param {Point[]} points
    * @param {{ priority: number, fresh: boolean }} options fresh: ask also for addresses that the station refused lately
-   * @returns {Promise<import('./points').Reading[]>} one per point
-   * @throws {PlcError} FRAME_TOO_LONG one value does not fit into one request
+   * @returns {Promise<import('./points').Reading[]>} one per point; bad with FRAME_TOO_LONG where a value does not fit into one request
+   * @throws {PlcError} FRAME_TOO_LONG none of them does
    */
   async read(points, { priority, fresh }) {
     /** @type {Job} */
@@ -53,8 +53,31 @@ class Reader {
       this.#fail([index], this.#named(points[index], this.#absent.get(keyOf(points[index]))), job)
     // known absent addresses are asked for apart, so that they do not spoil the others' request again
     const alone = equals(due, points)
-    await this.#run(this.#requests([joint, ...alone], job), job)
+    await this.#run(this.#possible([joint, ...alone], job), job)
     return job.readings
+  }
+
+  /** Requests for all that can be asked for at all: a value that is longer than a request is bad alone. */
+  #possible(parts, job) {
+    try {
+      return this.#requests(parts, job)
+    } catch (/** @type {any} */ error) {
+      if (error.code !== 'FRAME_TOO_LONG') throw error
+      const fitting = parts.map(part => part.filter(index => this.#fits(index, job)))
+      if (fitting.every(part => part.length === 0)) throw error
+      return this.#requests(fitting, job)
+    }
+  }
+
+  #fits(index, job) {
+    // a plan for each of thousands of points would take its time
+    if (job.points[index].count === 1) return true
+    try {
+      return this.#requests([[index]], job).length > 0
+    } catch (caught) {
+      this.#fail([index], asPlcError(caught, this.#station), job)
+      return false
+    }
   }
 
   #groups(points, fresh) {

@@ -156,7 +156,7 @@ class Writer {
       if (done[index]) for (const point of request.points) fates[point] = done[index]
     })
     if (verify) await verifyWritten({ reader: this.#reader, station: this.#settings.station, points, fates })
-    return { ...outcomeOf(entries, fates), attempts }
+    return { ...outcomeOf(entries, fates, this.#settings.station), attempts }
   }
 
   /** @returns {Promise<PlcError|null>} */

@@ -1,27 +1,42 @@
 'use strict'
 
 /**
+ * How long (ms) it is believed that nothing is heard: a cable that lost its station may begin to couple, a serial server may get another
+ * adapter, and neither closes the port.
+ */
+const BELIEVED = 2000
+
+/**
  * A 2-wire adapter may hear what it sends itself. Whether it does is found out from the first answered step; until
  * then, and where it does, one copy of our own bytes proves nothing (MODBUS answers a write with a copy of it).
  */
 class Echo {
   #mode
+  #now
   /** @type {'unknown'|'present'|'absent'} */
-  state = 'unknown'
+  #state = 'unknown'
+  #provenAt = -Infinity
   /** @type {any} */
   #sent = null
   #heard = false
   #clean = true
 
-  /** @param {'auto'|'on'|'off'} mode */
-  constructor(mode) {
+  /** @param {'auto'|'on'|'off'} mode @param {() => number} now ms of the clock */
+  constructor(mode, now) {
     this.#mode = mode
+    this.#now = now
     this.reset()
   }
 
   /** The port was opened: another adapter may be behind it. */
   reset() {
-    this.state = { on: 'present', off: 'absent' }[this.#mode] ?? 'unknown'
+    this.#state = { on: 'present', off: 'absent' }[this.#mode] ?? 'unknown'
+  }
+
+  /** What may be relied on: that nothing is heard was proven a moment ago, or is the user's word. */
+  get state() {
+    const old = this.#mode === 'auto' && this.#state === 'absent' && this.#now() - this.#provenAt > BELIEVED
+    return old ? 'unknown' : this.#state
   }
 
   /** @param {Buffer} bytes about to be sent */
@@ -37,16 +52,16 @@ class Echo {
    */
   disturbed(bytes) {
     this.#clean = false
-    if (this.#mode === 'auto' && this.state === 'absent' && bytes.includes(this.#sent)) this.state = 'unknown'
+    if (this.#mode === 'auto' && this.#state === 'absent' && bytes.includes(this.#sent)) this.#state = 'unknown'
   }
 
   get #awaited() {
-    return this.state !== 'absent' && !this.#heard
+    return this.#state !== 'absent' && !this.#heard
   }
 
   /** Bytes that our own echo will put before the answer. */
   get expected() {
-    return this.state === 'present' && !this.#heard ? this.#sent.length : 0
+    return this.#state === 'present' && !this.#heard ? this.#sent.length : 0
   }
 
   /**
@@ -67,11 +82,17 @@ class Echo {
     return this.#awaited && bytes.length >= this.#sent.length && bytes.subarray(0, this.#sent.length).equals(this.#sent)
   }
 
-  /** The step was answered: now it is known; a single stray copy of our bytes must not be believed for ever. */
-  answered() {
-    if (this.#mode !== 'auto' || this.state === 'absent') return
-    if (this.#heard) this.state = 'present'
-    else if (this.#clean) this.state = this.state === 'present' ? 'unknown' : 'absent'
+  /**
+   * The step was answered: now it is known; a single stray copy of our bytes must not be believed for ever.
+   * @param {Buffer} answer one that equals our own bytes proves nothing
+   */
+  answered(answer) {
+    if (this.#mode !== 'auto') return
+    if (this.#state !== 'absent') {
+      if (this.#heard) this.#state = 'present'
+      else if (this.#clean) this.#state = this.#state === 'present' ? 'unknown' : 'absent'
+    }
+    if (this.#clean && !answer.equals(this.#sent)) this.#provenAt = this.#now()
   }
 }
 

@@ -158,7 +158,7 @@ class Exchange {
       const verdict = step.match(bytes)
       if (verdict.take > 0 && verdict.take <= bytes.length) {
         const frame = this.#rx.take(verdict.take)
-        this.#echo.answered()
+        this.#echo.answered(frame)
         this.#settle(null, frame)
         return verdict
       }

@@ -1,18 +1,15 @@
 'use strict'
 
 const { EventEmitter } = require('node:events')
-const { PlcError } = require('../error')
 const { Condition } = require('./condition')
 const { Connection } = require('./connection')
-const { Driver } = require('./driver')
-const { Echo } = require('./echo')
-const { Exchange } = require('./exchange')
-const { Quarantine } = require('./quarantine')
 const { Recorder } = require('./recorder')
+const { Requests } = require('./requests')
 const { isLineFailure } = require('./run')
-const { Scheduler } = require('./scheduler')
 const { Silence } = require('./silence')
+const { Stream } = require('./stream')
 const { lineTimes } = require('./timing')
+const { Use } = require('./use')
 
 /** A frame that is being sent is never cut; nor is closing held up longer than this, ms. */
 const MOST_SENDING = 1000
@@ -20,7 +17,7 @@ const MOST_SENDING = 1000
 const LEAST_CALM = 20
 
 /**
- * One wire: joins who waits, who talks and how it opens, and is what others see of it.
+ * One wire: joins who uses it (requests, or a stream of messages) and how it opens, and is what others see of it.
  * Synchronous: everything happens inside a timer, the arrival of bytes, or a call; promises only at the edge.
  * Events: `state` (state, reason) and `event` ({ event, station, … }).
  */
@@ -28,11 +25,9 @@ class Line extends EventEmitter {
   #clock
   #settings
   #times
-  #scheduler
-  #quarantine
-  #echo
-  #exchange
-  #driver
+  #use
+  #requests
+  #stream
   #connection
   #recorder
   #condition
@@ -52,16 +47,13 @@ class Line extends EventEmitter {
     this.#settings = settings
     this.#times = lineTimes(settings)
     this.#recorder = new Recorder(clock)
-    const late = (fact, frame) => this.#late(fact, frame)
-    const hasPast = settings.transport !== 'simulated'
-    this.#quarantine = new Quarantine({ clock, memories, late, hasPast, freed: () => this.#driver.pump() })
-    const readyAt = station => this.#quarantine.readyAt(station)
-    this.#scheduler = new Scheduler({ clock, settings, readyAt, awake: () => this.#driver.pump() })
-    this.#echo = new Echo(settings.echo)
-    this.#exchange = new Exchange({ clock, settings, times: this.#times, echo: this.#echo, link: this.#link() })
-    this.#calm = new Silence({ clock, quietSince: () => this.#exchange.quietSince })
     this.#condition = new Condition({ line: name, changed: (state, reason) => this.emit('state', state, reason) })
-    this.#driver = this.#makeDriver()
+    this.#use = new Use(name)
+    const parts = this.#parts(memories)
+    this.#requests = new Requests(parts, this.#host())
+    this.#stream = new Stream(parts, this.#host())
+    const quietSince = () => Math.max(this.#requests.quietSince, this.#stream.quietSince)
+    this.#calm = new Silence({ clock, quietSince })
     const told = {
       opened: () => this.#opened(),
       data: bytes => this.#data(bytes),
@@ -70,31 +62,29 @@ class Line extends EventEmitter {
     this.#connection = new Connection({ name, clock, make, random, claims, told })
   }
 
-  #link() {
+  #parts(memories) {
     return {
       name: this.name,
+      clock: this.#clock,
+      settings: this.#settings,
+      times: this.#times,
+      recorder: this.#recorder,
+      memories,
       write: (bytes, done) => this.#connection.write(bytes, done),
-      hint: (count, at) => this.#connection.hint(count, at),
-      echoed: bytes => this.#recorder.echoed(bytes),
-      skipped: bytes => this.#unclaimed('skipped', bytes),
-      stray: bytes => this.#unclaimed('stray', bytes)
+      hint: (count, at) => this.#connection.hint(count, at)
     }
   }
 
-  #makeDriver() {
-    const parts = {
-      exchange: this.#exchange,
-      scheduler: this.#scheduler,
-      quarantine: this.#quarantine,
-      recorder: this.#recorder
-    }
-    const least = { gap: this.#times.gap, latenessBound: this.#settings.latenessBound }
-    return new Driver(parts, least, {
+  #host() {
+    return {
       refusal: () => this.#condition.refusal(),
+      rejection: () => this.#condition.rejection(),
+      isOpen: () => this.#connection.isOpen,
+      use: this.#use,
+      late: fact => this.#late(fact),
       answered: () => this.#answered(),
-      troubled: error => this.#troubled(error),
-      stray: bytes => this.#unclaimed('stray', bytes)
-    })
+      troubled: error => this.#troubled(error)
+    }
   }
 
   /** @returns {'closed'|'opening'|'open'|'waiting'|'jammed'} */
@@ -109,7 +99,7 @@ class Line extends EventEmitter {
 
   /** `unknown`, `present` or `absent`: whether the adapter hears what it sends. */
   get echo() {
-    return this.#echo.state
+    return this.#requests.echo
   }
 
   /** Times of this wire in ms: `{ character, gap, slack }`. */
@@ -119,7 +109,7 @@ class Line extends EventEmitter {
 
   /** Counters since the line was made; see docs/nodes.md. */
   stats() {
-    return { ...this.#recorder.stats.snapshot(), waiting: this.#scheduler.size }
+    return { ...this.#recorder.stats.snapshot(), waiting: this.#requests.size + this.#stream.size }
   }
 
   /** The last 200 frames, oldest first: `{ t, dir, station, bytes (hex), note }`. */
@@ -129,7 +119,7 @@ class Line extends EventEmitter {
 
   /** A plain object per station that survives redeploys; `bound` and `lateness` (ms) are the line's. */
   memory(station) {
-    return this.#quarantine.memory(station)
+    return this.#requests.memory(station)
   }
 
   /** Tells all who listen of something that was noticed: `{ event, station, cause, remedy, … }`. */
@@ -137,36 +127,27 @@ class Line extends EventEmitter {
     this.emit('event', { since: this.#clock.wall(), ...event })
   }
 
-  // --- requests
+  // --- who uses it; see lease.js
 
-  /**
-   * @param {object} lease who asks
-   * @param {() => Generator} make
-   * @param {any} options of `lease.run`, complete
-   * @returns {Promise<any>}
-   */
   run(lease, make, options) {
-    const rejection = this.#condition.rejection()
-    if (rejection) return Promise.reject(rejection)
-    const shared = this.#scheduler.shared(options.share)
-    if (shared) {
-      this.#recorder.stats.count('overruns', options.station)
-      return shared.join(lease)
-    }
-    if (this.#scheduler.full) {
-      this.#recorder.stats.count('queueFull')
-      const most = this.#settings.queueLimit
-      return Promise.reject(new PlcError('QUEUE_FULL', { line: this.name, most, sent: false }))
-    }
-    const late = limit => new PlcError('DEADLINE', { line: this.name, limit })
-    const promise = this.#scheduler.add(make, options, late).join(lease)
-    this.#driver.pump()
-    return promise
+    const refusal = this.#use.claim('requests', lease)
+    return refusal ? Promise.reject(refusal) : this.#requests.run(lease, make, options)
+  }
+
+  listen(lease, framing, listener) {
+    return this.#stream.listen(lease, framing, listener)
+  }
+
+  send(lease, bytes, options) {
+    return this.#stream.send(lease, bytes, options)
   }
 
   /** A lease was released: what only it waits for ends. */
   drop(lease) {
-    this.#driver.drop(lease, this.#condition.closed())
+    const reason = this.#condition.closed()
+    this.#requests.drop(lease, reason)
+    this.#stream.drop(lease, reason)
+    this.#use.leave(lease)
   }
 
   #answered() {
@@ -194,10 +175,15 @@ class Line extends EventEmitter {
 
   #opened() {
     this.#stopTimers()
-    this.#echo.reset()
-    this.#quarantine.opened()
-    this.#condition.become('open')
-    this.#driver.pump()
+    this.#requests.opened()
+    this.#stream.opened()
+    this.#become('open')
+  }
+
+  #become(state) {
+    this.#condition.become(state)
+    this.#requests.pump()
+    this.#stream.pump()
   }
 
   #stopTimers() {
@@ -212,14 +198,15 @@ class Line extends EventEmitter {
   #fall(reason, state = 'waiting') {
     this.#stopTimers()
     this.#condition.become(state, reason)
-    this.#driver.breakOff(reason)
-    this.#scheduler.rejectAll(reason)
+    this.#requests.fall(reason)
+    this.#stream.fall(reason)
   }
 
   #down(error, wasOpen) {
     if (this.#condition.closing) return
     if (wasOpen) this.#recorder.stats.count('reconnects')
     this.#fall(this.#condition.asReason(error))
+    if (wasOpen) this.#stream.lost()
   }
 
   /** A port that takes no bytes is closed: else they would go out at some later time. */
@@ -232,34 +219,31 @@ class Line extends EventEmitter {
   close(done) {
     this.#condition.closing = true
     const reason = this.#condition.closed()
-    const sending = Math.min(MOST_SENDING, this.#exchange.sendEnd - this.#clock.now())
     this.#stopTimers()
-    this.#scheduler.sleep()
-    this.#scheduler.rejectAll(reason)
-    this.#driver.stop(reason)
-    const shut = () =>
+    this.#requests.stop(reason)
+    const end = Math.max(this.#requests.sendEnd, this.#stream.stop(reason))
+    const sending = Math.min(MOST_SENDING, end - this.#clock.now())
+    const shut = () => {
+      this.#stream.end(reason)
       this.#connection.stop(() => {
         this.#condition.become('closed')
         done()
       })
+    }
     if (sending > 0 && this.#connection.isOpen) this.#clock.setTimer(shut, sending)
     else shut()
   }
 
-  // --- bytes that nobody asked for
+  // --- bytes and what was noticed
 
   #data(bytes) {
     this.#recorder.stats.add('bytesIn', bytes.length)
-    if (bytes.length > 0) this.#exchange.data(bytes)
+    if (bytes.length === 0) return
+    if (this.#use.kind === 'messages') this.#stream.data(bytes)
+    else this.#requests.data(bytes)
   }
 
-  #unclaimed(note, bytes) {
-    this.#recorder.unclaimed(note, bytes)
-    if (this.#condition.state === 'open') this.#quarantine.offer(bytes)
-  }
-
-  #late({ station, lateness, timeout, bound }, frame) {
-    this.#recorder.late(station, frame)
+  #late({ station, lateness, timeout, bound }) {
     const ms = Math.round(lateness)
     const remedy = `Station ${station} answers ${ms} ms after its ${timeout} ms timeout: raise the timeout.`
     this.report({ event: 'late', station, lateness: ms, timeout, bound, remedy })
@@ -271,8 +255,7 @@ class Line extends EventEmitter {
     const { message, remedy } = error
     this.report({ event: 'jammed', station: null, cause: message, remedy })
     this.#calm.wait(Math.max(LEAST_CALM, this.#times.gap), () => {
-      this.#condition.become('open')
-      this.#driver.pump()
+      this.#become('open')
     })
   }
 }

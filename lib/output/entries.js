@@ -6,6 +6,7 @@ const { absurdity } = require('../tag/convert')
 
 const MOST_ENTRIES = 1000
 const MOST_ITEMS = 1000
+const MOST_VALUES = 20000 // of one item
 const MOST_TEXT = 100000 // characters of a list of items
 const LONGEST = 200 // characters of one item
 
@@ -21,6 +22,10 @@ const isPairs = value => {
 const isScalar = value => ['string', 'number', 'boolean'].includes(typeof value)
 
 const checkValue = (item, value) => {
+  // before it is copied: an array may be long on paper alone
+  if (Array.isArray(value) && value.length > MOST_VALUES) {
+    throw new PlcError('TOO_MANY', { count: value.length, unit: 'values to write', most: MOST_VALUES })
+  }
   const values = Array.isArray(value) ? Array.from(value) : [value]
   if (values.length === 0) throw new PlcError('BAD_VALUE', { item, value: [], reason: 'it is empty' })
   for (const one of values) {

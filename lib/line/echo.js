@@ -4,7 +4,7 @@
  * How long (ms) it is believed that nothing is heard: a cable that lost its station may begin to couple, a serial server may get another
  * adapter, and neither closes the port.
  */
-const BELIEVED = 2000
+const BELIEVED = 500
 
 /**
  * A 2-wire adapter may hear what it sends itself. Whether it does is found out from the first answered step; until

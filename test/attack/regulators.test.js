@@ -14,7 +14,7 @@ describe('attack: an adapter that begins to hear itself when the regulator is un
       const b = bench({ line: { echo: 'auto' }, device: { ...own, attempts: 1 } })
       await b.read(['400001'])
       assert.equal(b.lease.line.echo, 'absent')
-      await b.clock.advance(2500)
+      await b.clock.advance(600)
       b.wire.setEcho(true)
       b.wire.setOff(11, true)
       const { outcome, code } = await b.write([{ item, value: 1 }])
@@ -29,7 +29,7 @@ describe('attack: an adapter that begins to hear itself when the regulator is un
     const asked = () => b.slave.requests.splice(0).map(request => request.slice(2, 4))
     asked()
     for (let n = 0; n < 3; n++) {
-      await b.clock.advance(900)
+      await b.clock.advance(200)
       assert.equal((await b.write([{ item: '400001', value: n }])).outcome, 'confirmed')
     }
     assert.deepEqual(asked(), ['06', '06', '03', '06'])

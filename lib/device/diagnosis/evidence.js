@@ -12,9 +12,9 @@ const MOST_BYTES = 2000
  * @property {Buffer[]} queries all of them, also those of others who ask this station on the same line
  * @property {Buffer} received all that came and is not our own echo
  * @property {Buffer} stray what of it was no answer
- * @property {import('./frames').Found[]} frames in `stray`
+ * @property {import('./frames').Found[]} frames in `stray`, and the answers of the station to others who ask it by another protocol or mode
  * @property {boolean} echo our own query came back
- * @property {number} answers of the station, whoever asked
+ * @property {number} answers of the station, whoever asked by this protocol and mode
  * @property {number} sentAt when the last query went out, epoch ms; 0: nothing was sent
  * @property {number} ms from the last query out to the last frame in
  */
@@ -34,6 +34,12 @@ const bytesOf = row => Buffer.from(row.bytes, 'hex')
 const joined = rows => Buffer.concat(rows.map(bytesOf)).subarray(0, MOST_BYTES)
 const isIn = ({ dir }) => dir === 'in'
 
+/** Frames of a row that are of another protocol, or mode; none where one is of this. */
+function otherIn(row, expected) {
+  const frames = findFrames(bytesOf(row), expected)
+  return frames.some(({ protocol }) => protocol === expected) ? [] : frames
+}
+
 /** Rows from a time on that belong to a station: what came while another one was asked is that one's. */
 function rowsOf(rows, station, since) {
   let mine = false
@@ -51,8 +57,11 @@ function rowsOf(rows, station, since) {
  */
 function evidenceOf(trace, { station, since, expected }) {
   const rows = rowsOf(trace, station, since)
-  const out = rows.filter(row => !isIn(row))
+  // a configuration that polls the same station may speak otherwise than the one that is tested
+  const out = rows.filter(row => !isIn(row) && otherIn(row, expected).length === 0)
   const heard = rows.filter(row => isIn(row) && row.note !== 'echo')
+  const answers = heard.filter(({ note }) => note === '')
+  const others = answers.map(row => otherIn(row, expected)).filter(frames => frames.length > 0)
   const sent = out.length > 0 ? bytesOf(out[out.length - 1]) : EMPTY
   // where the line was told that there is no echo, it comes as bytes of nobody
   const { rest: stray, found } = without(joined(heard.filter(({ note }) => note !== '')), sent)
@@ -64,9 +73,9 @@ function evidenceOf(trace, { station, since, expected }) {
     sentAt,
     queries: out.map(bytesOf),
     received: without(joined(heard), sent).rest,
-    frames: findFrames(stray, expected),
+    frames: [...findFrames(stray, expected), ...others.flat()],
     echo: found > 0 || rows.some(({ note }) => note === 'echo'),
-    answers: heard.filter(({ note }) => note === '').length,
+    answers: answers.length - others.length,
     ms: Math.max(0, Math.round(lastIn - sentAt))
   }
 }

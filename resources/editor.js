@@ -19,7 +19,6 @@ var nxlineSerialPlc = (() => {
       var choice = (fallback, ...known) => ({ kind: "choice", fallback, known });
       var flag = (fallback = false) => ({ kind: "flag", fallback });
       var list = () => ({ kind: "list", fallback: [] });
-      var bytes = (fallback, most) => ({ kind: "bytes", fallback, most, blank: true, says: `0 to ${most} bytes in hex` });
       var node = () => ({ kind: "node", fallback: "", needed: true });
       var READING = {
         itemsType: choice("list", "list", "msg"),
@@ -39,11 +38,6 @@ var nxlineSerialPlc = (() => {
         coalesce: flag(),
         topic: choice("item", "item", "keep", "fixed"),
         topicText: text()
-      };
-      var SENDING = {
-        access: choice("read", "read", "write"),
-        onFailure: choice("error", "error", "output"),
-        acceptRetained: flag()
       };
       var PROPERTIES = {
         "plc-line": {
@@ -119,45 +113,6 @@ var nxlineSerialPlc = (() => {
           mode: choice("read", "read", "write", "both"),
           ...READING,
           ...WRITING
-        },
-        "melsec-c24": {
-          name: text(),
-          line: node(),
-          bidirectional: flag(),
-          framing: choice("end", "end", "count", "gap"),
-          end: bytes("0D 0A", 2),
-          count: number(0, 0, 16384),
-          gap: number(0, 0, 6e4),
-          format: choice("text", "text", "bytes", "words"),
-          encoding: choice("latin1", "latin1", "utf8", "ascii"),
-          unit: choice("word", "word", "byte"),
-          ...SENDING,
-          padEven: flag(),
-          quiet: number(0, 0, 6e4),
-          timer0: number(0, 0, 6e5),
-          tornEnd: flag(),
-          flow: choice("none", "none", "dc", "driver"),
-          transparent: bytes("", 1),
-          room: number(64, 1, 4095),
-          stallLimit: number(3e4, 100, 36e5),
-          asciiBinary: flag(),
-          first: bytes("", 80),
-          last: bytes("", 80),
-          most: number(16384, 1, 65536),
-          sumCheck: flag(true),
-          ackTimeout: number(1e3, 10, 6e5),
-          priority: choice("c24", "c24", "us")
-        },
-        "incon-link": {
-          name: text(),
-          line: node(),
-          encoding: choice("ascii", "ascii", "latin1", "utf8"),
-          checked: flag(),
-          most: number(256, 2, 4096),
-          silence: number(200, 0, 6e4),
-          ...SENDING,
-          quiet: number(50, 0, 6e4),
-          before: number(5, 0, 6e4)
         }
       };
       var VARIABLE = /^\$\{([^}]+)\}$/;
@@ -174,14 +129,7 @@ var nxlineSerialPlc = (() => {
         return given === false || given === "false" ? { value: false } : { problem: "flag" };
       };
       var readChoice = (row, given) => row.known.includes(String(given)) ? { value: String(given) } : { problem: "choice" };
-      var HEX = /^(?:[0-9a-f]{2}(?:[\s,]*))*$/i;
-      var readBytes = (row, given) => {
-        const value = String(given).trim();
-        const length = value.replace(/[\s,]/g, "").length / 2;
-        return HEX.test(value) && length <= row.most ? { value } : { problem: "bytes" };
-      };
       var READERS = {
-        bytes: readBytes,
         number: readNumber,
         choice: readChoice,
         flag: (_row, given) => readFlag(given),
@@ -190,8 +138,7 @@ var nxlineSerialPlc = (() => {
         text: (_row, given) => ({ value: String(given).trim() })
       };
       var readProperty = (row, given) => {
-        const empty = typeof given === "string" && given.trim() === "" && !row.blank;
-        const missing = given === void 0 || given === null || empty;
+        const missing = given === void 0 || given === null || typeof given === "string" && given.trim() === "";
         if (missing)
           return row.needed && row.fallback === "" ? { problem: "missing", value: row.fallback } : { value: row.fallback };
         const variable = typeof given === "string" ? VARIABLE.exec(given.trim()) : null;
@@ -199,18 +146,12 @@ var nxlineSerialPlc = (() => {
         return READERS[row.kind](row, given);
       };
       var allowed = (row) => {
-        if (row.says) return row.says;
-        if (row.kind === "number") return `${row.least} to ${row.most}`;
+        if (row.kind === "number") return row.says ?? `${row.least} to ${row.most}`;
         return row.known ? row.known.join(", ") : row.kind;
       };
       var TRANSPORTS = { path: "serial", host: "tcp", port: "tcp" };
       var unused = (mode, name) => mode === "read" && name in WRITING || mode === "write" && name in READING;
-      var UNIDIRECTIONAL = ["framing", "end", "count", "gap", "first", "last", "asciiBinary", "timer0", "tornEnd"];
-      var FRAMINGS = { count: "count", gap: "gap" };
-      var isOn = (value) => value === true || value === "true";
-      var unusedByC24 = (name, { framing = "end", bidirectional = false }) => isOn(bidirectional) ? UNIDIRECTIONAL.includes(name) : Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing;
       var applies = (type, name, config) => {
-        if (type === "melsec-c24") return !unusedByC24(name, config);
         if (type === "plc-line") return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || "serial");
         return type !== "chino-regulator" || !unused(config.mode || "read", name);
       };
@@ -2461,6 +2402,7 @@ var nxlineSerialPlc = (() => {
         return t(first === last ? "editor.wire" : "editor.wires", values);
       };
       var isWritable = (table) => TABLES.find((row) => row.table === table).writable;
+      var canOnlyBeRead = (item, { type }) => type === "chino-config" && !isWritable(placeOf(item.kind, item.address).table);
       var describeModbus = (item, device, write) => {
         const length = lengthOf(item);
         const { table, wire, bit } = placeOf(item.kind, item.address);
@@ -2524,6 +2466,7 @@ var nxlineSerialPlc = (() => {
         unsure,
         parseItem,
         attempt,
+        canOnlyBeRead,
         hex
       };
     }
@@ -2540,7 +2483,7 @@ var nxlineSerialPlc = (() => {
       var { mixedConflict } = require_mixed();
       var { masterIdsOf, readSettings } = require_settings();
       var { readTags } = require_tags();
-      var { TYPES, attempt, deviceName, notationOf, notationWithTags, parseItem } = require_model();
+      var { TYPES, attempt, canOnlyBeRead, deviceName, notationOf, notationWithTags, parseItem } = require_model();
       var edited = { id: null, prefix: "node-input-" };
       var open = (node, prefix) => Object.assign(edited, { id: node.id, prefix });
       var done = () => {
@@ -2592,8 +2535,9 @@ var nxlineSerialPlc = (() => {
         if (!String(value || "").trim()) return true;
         const device = deviceOf(node, property);
         if (!device) return true;
-        parseItem(value, notationWithTags(device));
-        return device.access === "write" ? true : t("problem.readOnly", { plc: deviceName(device) });
+        const item = parseItem(value, notationWithTags(device));
+        if (device.access !== "write") return t("problem.readOnly", { plc: deviceName(device) });
+        return canOnlyBeRead(item, device) ? `${value}: ${t("editor.readable")}` : true;
       };
       var deviceOf = (node, property) => RED.nodes.node(current(node, property));
       var isBroadcast = (node) => {
@@ -3451,7 +3395,7 @@ var nxlineSerialPlc = (() => {
         if (room === 0 || !showsList()) return;
         const others = $("#dialog-form > div:visible").not(".nxline-list").toArray();
         const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0);
-        const least = $(".nxline-both").is(":visible") ? 150 : 240;
+        const least = $(".nxline-both").is(":visible") ? 200 : 240;
         $("#nxline-read-items").editableList("height", Math.max(least, room - used - 100));
       };
       var resizeRead = (size) => {
@@ -3473,7 +3417,7 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { isVariable } = require_check();
       var { PREFIX, device, deviceOf, deviceProperty, field, isItem, notation, tagOffers, value } = require_form();
-      var { describe, deviceName, parseItem } = require_model();
+      var { canOnlyBeRead, describe, deviceName, parseItem } = require_model();
       var { say, suggest } = require_widgets();
       var { errorText, t } = require_texts();
       var targetVerdict = (text) => {
@@ -3483,7 +3427,8 @@ var nxlineSerialPlc = (() => {
         if (isVariable(text)) return { says: t("editor.variable") };
         try {
           const item = parseItem(text, notation());
-          return readOnly ? { says: readOnly, bad: true } : { says: describe(item, device(), { write: true }) };
+          if (readOnly) return { says: readOnly, bad: true };
+          return { says: describe(item, device(), { write: true }), bad: canOnlyBeRead(item, device()) };
         } catch (error) {
           return { says: errorText(error), bad: true };
         }

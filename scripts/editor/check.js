@@ -6,7 +6,7 @@ const { readRanges } = require('../../lib/device/options')
 const { mixedConflict } = require('../../lib/device/mixed')
 const { masterIdsOf, readSettings } = require('../../lib/device/settings')
 const { readTags } = require('../../lib/tag/tags')
-const { TYPES, attempt, deviceName, notationOf, notationWithTags, parseItem } = require('./model')
+const { TYPES, attempt, canOnlyBeRead, deviceName, notationOf, notationWithTags, parseItem } = require('./model')
 
 /** Validators of the dialogs: they answer true, or the reason as a text. */
 
@@ -78,8 +78,9 @@ const checkTarget = property => (node, value) => {
   if (!String(value || '').trim()) return true
   const device = deviceOf(node, property)
   if (!device) return true
-  parseItem(value, notationWithTags(device))
-  return device.access === 'write' ? true : t('problem.readOnly', { plc: deviceName(device) })
+  const item = parseItem(value, notationWithTags(device))
+  if (device.access !== 'write') return t('problem.readOnly', { plc: deviceName(device) })
+  return canOnlyBeRead(item, device) ? `${value}: ${t('editor.readable')}` : true
 }
 
 const deviceOf = (node, property) => RED.nodes.node(current(node, property))

@@ -62,6 +62,9 @@ const whereOf = (first, last) => {
 const isWritable = table => TABLES.find(row => row.table === table).writable
 
 /** "function 03, wire address 107 (006Bh)" */
+/** Discrete inputs and input registers of a regulator. */
+const canOnlyBeRead = (item, { type }) => type === 'chino-config' && !isWritable(placeOf(item.kind, item.address).table)
+
 const describeModbus = (item, device, write) => {
   const length = lengthOf(item)
   const { table, wire, bit } = placeOf(item.kind, item.address)
@@ -153,5 +156,6 @@ module.exports = {
   unsure,
   parseItem,
   attempt,
+  canOnlyBeRead,
   hex
 }

@@ -146,7 +146,7 @@ const fitList = () => {
   if (room === 0 || !showsList()) return
   const others = $('#dialog-form > div:visible').not('.nxline-list').toArray()
   const used = others.reduce((sum, row) => sum + $(row).outerHeight(true), 0)
-  const least = $('.nxline-both').is(':visible') ? 150 : 240
+  const least = $('.nxline-both').is(':visible') ? 200 : 240
   $('#nxline-read-items').editableList('height', Math.max(least, room - used - 100))
 }
 

@@ -1,7 +1,7 @@
 'use strict'
 const { isVariable } = require('./check')
 const { PREFIX, device, deviceOf, deviceProperty, field, isItem, notation, tagOffers, value } = require('./form')
-const { describe, deviceName, parseItem } = require('./model')
+const { canOnlyBeRead, describe, deviceName, parseItem } = require('./model')
 const { say, suggest } = require('./widgets')
 const { errorText, t } = require('./texts')
 
@@ -14,7 +14,8 @@ const targetVerdict = text => {
   if (isVariable(text)) return { says: t('editor.variable') }
   try {
     const item = parseItem(text, notation())
-    return readOnly ? { says: readOnly, bad: true } : { says: describe(item, device(), { write: true }) }
+    if (readOnly) return { says: readOnly, bad: true }
+    return { says: describe(item, device(), { write: true }), bad: canOnlyBeRead(item, device()) }
   } catch (error) {
     return { says: errorText(error), bad: true }
   }

@@ -200,6 +200,9 @@ describe('validators', () => {
     ['chino-regulator', 'target', 'M0', true, { regulator: 'regulator', mode: 'read' }],
     ['chino-regulator', 'target', 'M0', /not an address/, { regulator: 'regulator', mode: 'write' }],
     ['chino-regulator', 'target', '400001', true, { regulator: 'regulator', mode: 'both' }],
+    ['chino-regulator', 'target', '300001', /^300001: can only be read/, { regulator: 'regulator', mode: 'write' }],
+    ['chino-regulator', 'target', '101001', /can only be read/, { regulator: 'regulator', mode: 'both' }],
+    ['chino-regulator', 'target', '001001', true, { regulator: 'regulator', mode: 'both' }],
     ['chino-regulator', 'target', '400001', /^CHINO 12 is read-only/, { regulator: 'readOnly', mode: 'both' }]
   ]
   for (const [type, name, value, expected, node] of cases) {

@@ -52,6 +52,26 @@ for (const { name, red, node } of RUNTIMES) {
       await page.waitForFunction(() => !window.RED.nodes.dirty())
     }
 
+    /** Through the menu; `look` is done while the example is chosen. */
+    const importExample = async (number, tab, look = async () => {}) => {
+      await page.locator('#red-ui-header-button-sidemenu').click()
+      await page.locator('#menu-item-import').click()
+      await page.locator('#red-ui-clipboard-dialog-import-tabs a:has-text("Examples")').click()
+      await page.locator(`.red-ui-treeList-label:visible:has-text("${manifest.name}")`).click()
+      await page.locator(`.red-ui-treeList-label:visible:has-text("${number} ${tab}")`).click()
+      await look()
+      await page.locator('#red-ui-clipboard-dialog-ok').click()
+      await page.locator(`.red-ui-tab:has-text("${tab}") a`).first().click()
+    }
+    /** A page of a configuration's dialog; two clicks in a row count as a double click, which opens none. */
+    const openPage = async (device, tab) => {
+      const open = async () => {
+        await page.locator(`#nxline-${device}-tabs a[href="#nxline-${device}-${tab}"]`).click()
+        return page.locator(`#nxline-${device}-${tab}`).isVisible()
+      }
+      await until(open, { what: `the tab ${tab}`, every: 400 })
+    }
+
     before(async () => {
       fs.mkdirSync(pictures, { recursive: true })
       runtime = await startNodeRed({ red, node, product: packedProduct(), flow: [] })
@@ -80,14 +100,7 @@ for (const { name, red, node } of RUNTIMES) {
     })
 
     it('imports an example from the menu', async () => {
-      await page.locator('#red-ui-header-button-sidemenu').click()
-      await page.locator('#menu-item-import').click()
-      await page.locator('#red-ui-clipboard-dialog-import-tabs a:has-text("Examples")').click()
-      await page.locator(`.red-ui-treeList-label:visible:has-text("${manifest.name}")`).click()
-      await page.locator('.red-ui-treeList-label:visible:has-text("04 Write with confirmation")').click()
-      await picture('import')
-      await page.locator('#red-ui-clipboard-dialog-ok').click()
-      await page.locator('.red-ui-tab:has-text("Write with confirmation") a').first().click()
+      await importExample('04', 'Write with confirmation', () => picture('import'))
       assert.ok(await nodeOf('nx-write', 'setpoint, verified'))
       await picture('example')
     })
@@ -137,12 +150,7 @@ for (const { name, red, node } of RUNTIMES) {
       await page.waitForFunction(() => /answer/i.test(document.querySelector('#nxline-nx-test-result').textContent))
       await picture('test')
       for (const tab of ['tags', 'writing', 'details']) {
-        // two clicks in a row count as a double click, which opens no tab
-        const open = async () => {
-          await page.locator(`#nxline-nx-tabs a[href="#nxline-nx-${tab}"]`).click()
-          return page.locator(`#nxline-nx-${tab}`).isVisible()
-        }
-        await until(open, { what: `the tab ${tab}`, every: 400 })
+        await openPage('nx', tab)
         await picture(`nx-config ${tab}`)
       }
       await page.locator('#node-config-dialog-cancel').click()
@@ -151,13 +159,7 @@ for (const { name, red, node } of RUNTIMES) {
     })
 
     it('opens the dialog of nx-read', async () => {
-      await page.locator('#red-ui-header-button-sidemenu').click()
-      await page.locator('#menu-item-import').click()
-      await page.locator('#red-ui-clipboard-dialog-import-tabs a:has-text("Examples")').click()
-      await page.locator(`.red-ui-treeList-label:visible:has-text("${manifest.name}")`).click()
-      await page.locator('.red-ui-treeList-label:visible:has-text("03 Read on demand")').click()
-      await page.locator('#red-ui-clipboard-dialog-ok').click()
-      await page.locator('.red-ui-tab:has-text("Read on demand") a').first().click()
+      await importExample('03', 'Read on demand')
       await openDialog('nx-read', 'temperature, M0..M3')
       await picture('nx-read')
       await closeDialog()
@@ -172,6 +174,79 @@ for (const { name, red, node } of RUNTIMES) {
       // { temperature: 21.5, M0_M3: array[4] }
       assert.match(await seen.textContent(), /temperature: -?\d/)
       await picture('value')
+    })
+
+    it('a regulator: the dialog of the node shows what its mode needs', async () => {
+      await importExample('11', 'Set an output')
+      await openDialog('chino-regulator', 'zone 1')
+      const target = page.locator('#node-input-target')
+      const items = page.locator('#nxline-read-items')
+      const shown = async () => [await items.isVisible(), await target.isVisible()]
+      assert.deepEqual(await shown(), [true, true])
+      await picture('chino-regulator')
+      await page.locator('#node-input-mode').selectOption('read')
+      assert.deepEqual(await shown(), [true, false])
+      await page.locator('#node-input-mode').selectOption('write')
+      assert.deepEqual(await shown(), [false, true])
+      await target.fill('load_current')
+      await page.locator('#nxline-write-note', { hasText: 'can only be read' }).waitFor()
+      await target.fill('')
+      await page.locator('#node-input-mode').selectOption('both')
+    })
+
+    const testRegulator = async expected => {
+      await page.locator('#nxline-chino-test').click()
+      const result = page.locator('#nxline-chino-test-result')
+      await until(async () => expected.test(await result.textContent()), { what: String(expected), every: 50 })
+      return result.textContent()
+    }
+
+    it('its configuration: Test says that it answers, and what is wrong with a number', async () => {
+      await page.locator('#node-input-btn-regulator-edit').click()
+      const station = page.locator('#node-config-input-station')
+      await station.waitFor()
+      await testRegulator(/^Station 1 answers in \d+ ms: manual_output = /)
+      await picture('chino-config')
+      await station.fill('300')
+      await testRegulator(/^Station: Allowed is 0 to 247$/)
+      await station.fill('0')
+      await testRegulator(/broadcast/)
+      await station.fill('1')
+    })
+
+    it('its tags: the template waits for addresses, a wrong one is told in the notation of MODBUS', async () => {
+      await openPage('chino', 'tags')
+      const rows = page.locator('#nxline-chino-tag-list > li')
+      const before = await rows.count()
+      await page.locator('#nxline-chino-template').click()
+      const added = rows.nth(before)
+      await added.getByText('Fill in the address').waitFor()
+      const address = added.locator('.nxline-address')
+      assert.equal(await address.evaluate(input => input === document.activeElement), true)
+      await address.fill('1001')
+      const told = added.getByText('a zero in front may have been lost')
+      assert.doesNotMatch(await told.textContent(), /M0/)
+      await picture('chino-config template')
+      await address.fill('001001')
+      await added.getByText('function 01, wire address 1000 (03E8h)').waitFor()
+      for (const tab of ['writing', 'details']) {
+        await openPage('chino', tab)
+        await picture(`chino-config ${tab}`)
+      }
+      await page.locator('#node-config-dialog-cancel').click()
+      await page.locator('#nxline-chino-test').waitFor({ state: 'detached' })
+      await closeDialog()
+    })
+
+    it('a regulator is polled and set, above its limit it is not', async () => {
+      await deploy()
+      const press = async label =>
+        page.locator(`${byId(await nodeOf('inject', label))} .red-ui-flow-node-button-button`).click()
+      await press('output 40 %')
+      assert.equal((await runtime.next(await nodeOf('debug', 'confirmed'))).outcome, 'confirmed')
+      await press('output 95 %: over the limit')
+      assert.equal((await runtime.next(await nodeOf('debug', 'not confirmed'))).code, 'VALUE_OUT_OF_RANGE')
+      await picture('regulator deployed')
     })
 
     it('nothing failed in the page meanwhile', () => assert.deepEqual(problems, []))

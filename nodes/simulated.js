@@ -35,6 +35,8 @@ const simulatedWire = ({ baudRate }) => {
   const clock = createRealClock()
   const wire = createWire({ clock, baudRate })
   const makes = new Map()
+  /** Who keeps the power of a number on: two may stand for the same one. @type {Map<number, Set<number>>} */
+  const holders = new Map()
   // the only PLC of a line has a number of its own behind 255
   const numberOf = station => (station === ONLY_PLC ? 1 : station)
   const find = station => wire.stations().find(each => each.station === numberOf(station))
@@ -47,15 +49,27 @@ const simulatedWire = ({ baudRate }) => {
   return {
     wire,
     find,
-    /** @param {any} settings of a device's config node, with its type; a broadcast is no station */
+    /**
+     * @param {any} settings of a device's config node, with its type; a broadcast is no station; where another one stands already under this
+     *   number, it stays
+     */
     add(settings) {
-      if (settings.type === 'chino-config' && settings.station === 0) return
-      const number = numberOf(settings.station)
+      const { type, station } = settings
+      if (type === 'chino-config' && station === 0) return
+      const number = numberOf(station)
+      const own = holders.get(number) ?? new Set()
+      const isTaken = [...own].some(each => each !== station)
+      holders.set(number, own.add(station))
       if (makes.get(number) === makeOf(settings)) wire.setOff(number, false)
-      else place(settings)
+      else if (!isTaken) place(settings)
     },
     /** @param {number} station */
-    remove: station => wire.setOff(numberOf(station), true)
+    remove(station) {
+      const number = numberOf(station)
+      const own = holders.get(number)
+      own?.delete(station)
+      if (!own?.size) wire.setOff(number, true)
+    }
   }
 }
 

@@ -263,6 +263,32 @@ describe('regulators: deploys, and lines with PLCs', () => {
     await until(() => out.length > sent + 1, 'more values')
   })
 
+  // 255 is the simulated PLC 1: the test replaced the regulator 1, and left it without power until the next full deploy
+  for (const [what, deployed, visitor] of [
+    ['the only PLC, beside the regulator 1', () => [zone({ station: '1', timeout: '1000' }), polling()], 255],
+    [
+      'the only PLC, which is PLC 1',
+      () => [plcNode({ timeout: '1000' }), reader({ items: ['M2'], interval: '20' })],
+      255
+    ],
+    [
+      'PLC 1, which is the only PLC',
+      () => [plcNode({ station: '255', timeout: '1000' }), reader({ items: ['M2'], interval: '20' })],
+      1
+    ]
+  ]) {
+    it(`a test of ${what} leaves the simulated station that is deployed as it is`, async () => {
+      const { out } = await load([{ id: 'line', type: 'plc-line', transport: 'simulated' }, ...deployed()])
+      await until(() => out.length > 0)
+      const undo = helper.getNode('line').plcs.visit({ type: 'nx-config', station: visitor })
+      for (const leave of [() => {}, undo]) {
+        leave()
+        const sent = out.length
+        await until(() => out.length > sent + 1, 'more values', 1500)
+      }
+    })
+  }
+
   it('a simulated regulator that becomes ASCII, or a PLC, is another station', async () => {
     const line = { id: 'line', type: 'plc-line', transport: 'simulated' }
     await load([line, zone({ station: '5', timeout: '1000' }), polling()])

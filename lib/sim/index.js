@@ -6,6 +6,7 @@ module.exports = {
   ...require('./random'),
   ...require('./nx-plc'),
   ...require('./chino-regulator'),
+  ...require('./melsec-c24'),
   ...require('./line'),
   ...require('./wire'),
   ...require('./faults'),

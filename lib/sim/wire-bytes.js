@@ -21,23 +21,13 @@ const idleAt = (wire, from) =>
 
 /**
  * Puts bytes on the wire, behind what the same sender still has to send.
- * @param {any} wire
- * @param {any} from
- * @param {{ bytes: Buffer, at: number, passed?: () => void }} sending passed: called when the last of them has passed
- * @returns {number} when that will be
+ * @returns {number} when the last of them has passed
  */
-function transmit(wire, from, { bytes, at, passed }) {
-  if (bytes.length === 0) {
-    passed?.()
-    return Math.max(at, from.busyUntil)
-  }
-  if (from.held) {
-    from.held.push({ bytes, passed })
-    return Infinity
-  }
+function transmit(wire, from, { bytes, at }) {
+  if (bytes.length === 0) return Math.max(at, from.busyUntil)
   const start = Math.max(at, from.busyUntil, wire.collisions ? 0 : idleAt(wire, from))
   const end = start + bytes.length * wire.byteMs
-  const sending = { from, bytes: Buffer.from(bytes), sent: bytes, start, end, told: 0, passed, timer: null }
+  const sending = { from, bytes: Buffer.from(bytes), sent: bytes, start, end, told: 0 }
   from.busyUntil = end
   wire.counts.frames++
   wire.counts.bytes += bytes.length
@@ -74,8 +64,8 @@ function schedule(wire, sending) {
   const listeners = [...wire.parties].filter(party => hears(wire, party, sending.from))
   const until = start + Math.min(bytes.length, told + pieceOf(wire, sending, listeners)) * byteMs
   // nothing but a master, or a station that may let one go on, touches a promise
-  const quiet = !sending.passed && !listeners.some(({ handlers, station }) => handlers || station.appetite)
-  sending.timer = clock.setTimer(() => arrive(wire, sending), until - clock.now(), { quiet })
+  const quiet = !listeners.some(({ handlers, station }) => handlers || station.appetite)
+  clock.setTimer(() => arrive(wire, sending), until - clock.now(), { quiet })
 }
 
 /**
@@ -104,20 +94,13 @@ function arrive(wire, sending) {
     sending.told = count
     tell(wire, sending, { piece: worn(wire, bytes.subarray(told, count)), times })
   }
-  // what hears a piece may stop its sender: `bytes` is shorter then
-  if (sending.told < sending.bytes.length) return schedule(wire, sending)
-  remove(wire, sending)
-  sending.passed?.()
+  if (count < bytes.length) return schedule(wire, sending)
+  active.splice(active.indexOf(sending), 1)
 }
 
 function tell(wire, { from }, { piece, times }) {
   if (piece.length === 0) return
   for (const party of [...wire.parties]) if (hears(wire, party, from)) party.hear(piece, times, from)
-}
-
-function remove({ active }, sending) {
-  const place = active.indexOf(sending)
-  if (place >= 0) active.splice(place, 1)
 }
 
 /** Single bytes that are damaged or lost, at the rates of `wear`, on their way to whomever. */
@@ -133,35 +116,4 @@ function worn({ wear, random }, piece) {
   return Buffer.from(left)
 }
 
-/** The sender's UART stops behind the byte that it is sending; what is left is kept until `release`. */
-function hold(wire, from) {
-  if (from.held) return
-  from.held = []
-  const { clock, byteMs, active } = wire
-  for (const sending of active.filter(each => each.from === from)) {
-    const { bytes, start } = sending
-    const begun = Math.ceil((clock.now() - start) / byteMs - 1e-6)
-    const count = Math.min(bytes.length, Math.max(sending.told, begun))
-    if (count === bytes.length) continue
-    from.held.push({ bytes: bytes.subarray(count), passed: sending.passed })
-    sending.passed = undefined
-    sending.bytes = bytes.subarray(0, count)
-    sending.end = start + count * byteMs
-    wire.counts.bytes -= bytes.length - count
-    clock.clearTimer(sending.timer)
-    if (sending.told === count) remove(wire, sending)
-    else schedule(wire, sending)
-  }
-  from.busyUntil = active.reduce(
-    (latest, each) => (each.from === from ? Math.max(latest, each.end) : latest),
-    clock.now()
-  )
-}
-
-function release(wire, from) {
-  const held = from.held ?? []
-  from.held = null
-  for (const each of held) transmit(wire, from, { ...each, at: wire.clock.now() })
-}
-
-module.exports = { transmit, idleAt, hold, release }
+module.exports = { transmit, idleAt }

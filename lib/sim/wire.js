@@ -3,7 +3,7 @@
 const { PlcError } = require('../error')
 const { createRandom } = require('./random')
 const { applyFault } = require('./faults')
-const { hold, idleAt, release, transmit } = require('./wire-bytes')
+const { idleAt, transmit } = require('./wire-bytes')
 
 /**
  * One line with several stations and one or more masters. Every byte takes its time on the wire, in both directions; on a
@@ -125,14 +125,7 @@ function tellCts(wire) {
   const on = isCts(wire)
   if (on === wire.ctsOn) return
   wire.ctsOn = on
-  for (const party of [...wire.parties]) if (party.handlers) showCts(wire, party, on)
-}
-
-function showCts(wire, master, on) {
-  const { rtscts, cts } = master.handlers
-  if (rtscts && on) release(wire, master)
-  else if (rtscts) hold(wire, master)
-  cts?.(on)
+  for (const { handlers } of [...wire.parties]) handlers?.cts?.(on)
 }
 
 /** A station on the wire: hears bytes, answers after its turnaround, through the faults. */
@@ -181,19 +174,15 @@ function connect(wire, handlers) {
   const master = {
     handlers,
     busyUntil: 0,
-    held: null,
     hear: bytes => handlers.data(bytes)
   }
   wire.parties.add(master)
-  if (!isCts(wire)) showCts(wire, master, false)
+  if (!isCts(wire)) handlers.cts?.(false)
   return {
-    write: (bytes, passed) => {
-      if (wire.parties.has(master)) transmit(wire, master, { bytes, at: wire.clock.now(), passed })
+    write: bytes => {
+      if (wire.parties.has(master)) transmit(wire, master, { bytes, at: wire.clock.now() })
     },
-    close() {
-      wire.parties.delete(master)
-      master.held = null
-    }
+    close: () => void wire.parties.delete(master)
   }
 }
 
@@ -207,9 +196,8 @@ function connect(wire, handlers) {
  * @property {(number: number) => void} remove what it still has to answer goes out
  * @property {() => any[]} stations
  * @property {(number: number, off: boolean) => void} setOff a station without power
- * @property {(handlers: { data: (bytes: Buffer) => void, closed: () => void, cts?: (on: boolean) => void, rtscts?: boolean }) =>
- *   { write: (bytes: Buffer, passed?: () => void) => void, close: () => void }} connect a master; throws PORT_GONE while unplugged. `cts`: what a
- *   station's DTR says, at first only if it is off; `rtscts`: the master's UART stops by itself while it is off. `passed`: the last byte is through
+ * @property {(handlers: { data: (bytes: Buffer) => void, closed: () => void, cts?: (on: boolean) => void }) => { write: (bytes: Buffer) => void, close:
+ *   () => void }} connect a master; throws PORT_GONE while unplugged. `cts`: what a station's DTR says, at first only if it is off
  * @property {(bytes: Buffer) => void} noise bytes from nowhere
  * @property {() => number} idleAt when the last byte that is on its way has passed, ms of the clock
  * @property {(on: boolean) => void} setEcho

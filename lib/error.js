@@ -57,12 +57,25 @@ const CODES = Object.freeze({
     'a retained MQTT message was not written to {item}',
     'Publish set values without retain, or accept retained messages in the node.'
   ],
+  SENDING_OFF: ['{node} sent nothing: it only receives', 'Set Access to "receive and send" in the node.'],
   FUNCTION_REFUSED: [
     'the function {function} is never sent',
     'Only the functions that read and write bits and words are used.'
   ],
   FRAME_TOO_LONG: ['{what} does not fit into one frame: {got} of at most {most} bytes', 'Split it.'],
   TOO_MANY: ['{count} {unit} at once are too many: at most {most}', 'Split the message.'],
+  END_CODE_INSIDE: [
+    'the message was not sent: it contains {code} at byte {at}; {reason}',
+    'Change the message, choose another end code, or use ASCII-binary conversion on both sides.'
+  ],
+  FLOW_CODE_INSIDE: [
+    'the message was not sent: its byte {at} is {code}, which the flow control takes out',
+    'Set a transparent code on both sides, or use ASCII-binary conversion or flow control by wire.'
+  ],
+  ODD_COUNT: [
+    'the message was not sent: {count} bytes are an odd count; {reason}',
+    'Switch "pad to even" on, send an even count, or use byte units on both sides.'
+  ],
   // --- the station's own word
   PLC_WRONG_FUNCTION: [
     'station {station} answers error 1: wrong function code',
@@ -128,6 +141,10 @@ const CODES = Object.freeze({
   MODBUS_EXCEPTION: [
     'station {station} answers exception {exception}, which the protocol does not name',
     'Look it up in the manual of the device.'
+  ],
+  C24_NAK: [
+    '{station} did not take the message: NAK {nak}, {reason}',
+    'Look the code up in the manual of the module; send it again when the cause is gone.'
   ],
   // --- the conversation
   TIMEOUT: [
@@ -200,6 +217,10 @@ const CODES = Object.freeze({
     '{owner} and {other} use {path} with different settings: {reason}',
     'Use one line configuration, or the same settings.'
   ],
+  LINE_USE: [
+    '{owner} and {other} cannot share {line}: {reason}',
+    'Give one of them a line of its own: a line asks stations, or listens to messages in one way.'
+  ],
   SUPERSEDED: [
     '{item} was not written: a newer value came while this one waited',
     'Nothing to do; switch "only the latest" off in the node to write every value.'
@@ -264,7 +285,7 @@ class PlcError extends Error {
   }
 }
 
-const REFUSAL = /^(PLC|MODBUS)_/
+const REFUSAL = /^(PLC|MODBUS|C24)_/
 
 /**
  * Whether an error is the station's own word: an answer came, and it says no.

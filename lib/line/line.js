@@ -50,7 +50,7 @@ class Line extends EventEmitter {
     this.#condition = new Condition({ line: name, changed: (state, reason) => this.emit('state', state, reason) })
     this.#use = new Use(name)
     const parts = this.#parts(memories)
-    this.#requests = new Requests(parts, this.#host())
+    this.#requests = new Requests(parts, { ...this.#host(), isOpen: () => this.#condition.state === 'open' })
     this.#stream = new Stream(parts, this.#host())
     const quietSince = () => Math.max(this.#requests.quietSince, this.#stream.quietSince)
     this.#calm = new Silence({ clock, quietSince })

@@ -1,5 +1,6 @@
 'use strict'
 
+const { EMPTY } = require('./receiver')
 const { Stats } = require('./stats')
 const { Trace } = require('./trace')
 
@@ -47,6 +48,40 @@ class Recorder {
     this.stats.count('late', station)
     this.#row('in', { station, bytes: frame, note: 'late' })
   }
+
+  // --- listening lines
+
+  /** A message or a reply begins to go out. @param {Buffer} bytes @param {string} note */
+  letter(bytes, note) {
+    this.#row('out', { station: null, bytes, note })
+  }
+
+  /** Its last byte has left. @param {number} ms from its first byte on */
+  letterSent(ms) {
+    this.stats.count('messagesOut')
+    this.stats.add('busy', ms)
+  }
+
+  letterFailed(error) {
+    const counter = FAILURES[error.code]
+    if (counter) this.stats.count(counter)
+    this.failed(error.code ?? error.message)
+  }
+
+  /** @param {string} note */
+  failed(note) {
+    this.#row('in', { station: null, bytes: EMPTY, note })
+  }
+
+  /** @param {{ kind: string, bytes: Buffer, complete: boolean, reason?: string }} message */
+  message({ kind, bytes, complete, reason }) {
+    const damaged = kind === 'damaged' || !complete
+    this.stats.count('messagesIn')
+    if (damaged) this.stats.count('damagedMessages')
+    this.#row('in', { station: null, bytes, note: reason ?? (damaged ? 'incomplete' : '') })
+  }
+
+  // --- bytes that nobody asked for
 
   echoed(bytes) {
     this.stats.count('echoes')

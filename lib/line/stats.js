@@ -1,7 +1,9 @@
 'use strict'
 
 const STATION = ['queries', 'answers', 'timeouts', 'incomplete', 'crcErrors', 'late', 'overruns']
-const LINE = [...STATION, 'skippedBytes', 'strayBytes', 'echoes', 'queueFull', 'bytesOut', 'bytesIn', 'reconnects']
+const LISTENING = ['messagesOut', 'messagesIn', 'damagedMessages', 'tornWrites', 'stops']
+const BYTES = ['skippedBytes', 'strayBytes', 'echoes', 'queueFull', 'bytesOut', 'bytesIn', 'reconnects']
+const LINE = [...STATION, ...BYTES, ...LISTENING]
 
 const zeros = names => Object.fromEntries(names.map(name => [name, 0]))
 

@@ -91,9 +91,15 @@ for (const { name, red, node } of RUNTIMES) {
     })
 
     it('shows the nodes in the palette, found by what people type', async () => {
-      for (const text of ['nx', 'plc']) {
-        await page.locator('#red-ui-palette-search input').fill(text)
-        for (const type of ['nx-read', 'nx-write']) await page.locator(`[data-palette-type="${type}"]`).waitFor()
+      const search = page.locator('#red-ui-palette-search input')
+      const of = type => page.locator(`#red-ui-palette [data-palette-type="${type}"]`)
+      const [nx, chino] = [['nx-read', 'nx-write'], ['chino-regulator']]
+      for (const [text, types] of Object.entries({ nx, plc: nx, modbus: chino, chino })) {
+        await search.fill('')
+        // the filter hears keys, not changes
+        await search.pressSequentially(text)
+        await of('inject').first().waitFor({ state: 'hidden' })
+        for (const type of types) await of(type).waitFor()
       }
       await picture('palette')
       await page.locator('#red-ui-palette-search input').fill('')

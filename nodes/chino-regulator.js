@@ -24,6 +24,12 @@ const writingBesideReading = session => {
 
 const asks = msg => Object.hasOwn(msg, 'items')
 
+/** Of a node that both read and wrote: its questions must not become set values. */
+const checkWrites = msg => {
+  if (!asks(msg)) return
+  throw new PlcError('NOTHING_TO_WRITE', { reason: 'it has msg.items, so it asks, and this node only writes' })
+}
+
 /** What a message does in each mode; `write` before `read`, since what polls must be stopped again. */
 const MODES = {
   read(RED, session) {
@@ -31,7 +37,7 @@ const MODES = {
     return { reads: () => true, ask, stop }
   },
   write(_RED, session) {
-    return { reads: () => false, write: startWriting(session) }
+    return { reads: () => false, write: startWriting(session, { check: checkWrites }) }
   },
   both(RED, session) {
     const write = writingBesideReading(session)

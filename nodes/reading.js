@@ -121,7 +121,12 @@ const startReading = (RED, session, { named = false } = {}) => {
     if (results.every(({ quality }) => quality === 'bad')) throw faultOf(results)
   }
   const polled = (answers, { failure, changed }) => {
-    if (answers.length === 0) return node.error(withCode(failure.code, failure.text ?? failure.message), {})
+    // nothing could even be asked: no item fits
+    if (answers.length === 0) {
+      show([{ quality: 'bad', code: failure.code }])
+      if (changed) node.error(withCode(failure.code, failure.text ?? failure.message), {})
+      return
+    }
     const results = fixed.complete(answers)
     show(results)
     deliver(results, {}, messages => node.send(messages))

@@ -25,13 +25,14 @@ const setTopic = (msg, { settings, deviceNode, entries }) => {
 /** A message on one of the outputs, counted from 0. */
 const onOutput = (index, msg) => [...new Array(index).fill(null), msg]
 
-const createWriter = (session, output) => {
+const createWriter = (session, { output, check }) => {
   const { settings, deviceNode, device, display } = session
   const { target, verify, coalesce } = settings
 
   const attempt = async msg => {
     let entries = []
     try {
+      check(msg)
       entries = entriesOf(msg, { target })
       if (!settings.acceptRetained) checkRetained(msg, entries)
     } catch (/** @type {any} */ error) {
@@ -58,16 +59,17 @@ const createWriter = (session, output) => {
 
 /**
  * @param {any} session of {@link import('./session').openSession}; settings as those of nx-write
- * @param {{ output?: number }} [options] output: of what is confirmed, counted from 0; what is not goes to the next one
+ * @param {{ output?: number, check?: (msg: any) => void }} [options] output: of what is confirmed, counted from 0; what is not goes to the next
+ *   one; check: throws for a message that is not meant to write
  * @returns {(msg: any, send: (messages: any) => void) => Promise<void>} rejects with what goes to `done`
  * @throws {Error} why nothing can be written: refused when the flow starts
  */
-const startWriting = (session, { output = 0 } = {}) => {
+const startWriting = (session, { output = 0, check = () => {} } = {}) => {
   const { settings, deviceNode, device } = session
   if (deviceNode.tagFault) throw deviceNode.tagFault
   // a target that can never be written is a mistake of the flow
   if (settings.target) device.checkTarget(settings.target, { fixed: true })
-  return createWriter(session, output)
+  return createWriter(session, { output, check })
 }
 
 module.exports = { startWriting }

@@ -264,6 +264,23 @@ describe('chino-regulator, reading', () => {
     await until(() => out.length > sent, 'recovery')
   })
 
+  it('an item longer than a request: bad beside others; alone, it is reported once and not in each cycle', async () => {
+    const { out } = await ask({ items: ['400108', 'energy'], interval: '20' }, { zone: { inputRead: '1' } })
+    await until(() => out.length > 1, 'values')
+    assert.deepEqual([out[0].payload, out[0].bad.energy.code], [{ _400108: 555 }, 'FRAME_TOO_LONG'])
+    await helper.unload()
+    const { caught } = await ask({ items: ['energy'], interval: '10' }, { zone: { inputRead: '1' } })
+    const seen = statuses('regulator')
+    await tick(50)
+    await tick(50)
+    // one for the message, one for the polls
+    assert.deepEqual(
+      caught.map(({ error }) => error.code),
+      ['FRAME_TOO_LONG', 'FRAME_TOO_LONG']
+    )
+    assert.ok(seen.length <= 1, JSON.stringify(seen))
+  })
+
   it('status: a ring while connecting, a dot with the count', async () => {
     await load([lineNode(wire), zoneNode(), regulator({ items: ['400108', '400109'], interval: '20' })])
     const seen = statuses('regulator')

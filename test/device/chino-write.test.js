@@ -78,6 +78,15 @@ describe('CHINO regulator: writing', () => {
     assert.deepEqual(b.slave.values('co', 2, 32), [1, ...new Array(30).fill(0), 1])
   })
 
+  it('writes no more at once than the settings allow', async () => {
+    start({ device: { coilWrite: 8, holdingWrite: 2 } })
+    await b.write([entry('000001..000010', new Array(10).fill(true)), entry('400001..400003', [1, 2, 3])])
+    assert.deepEqual(
+      writes().map(hex => hex.slice(2, 12)),
+      ['0f00000008', '0f00080002', '1000000002', '1000020001']
+    )
+  })
+
   it('maximum sizes: 1968 coils and 123 registers in one frame, more in several', async () => {
     start()
     await b.write([

@@ -1,7 +1,7 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { createChinoRegulator, lineSettings } = require('../../lib')
-const { deviceSettings } = require('../../nodes/device-settings')
+const { createDevice, deviceSettings } = require('../../nodes/device-settings')
 const { poolSettings } = require('../../nodes/line-settings')
 const { PROPERTIES } = require('../../nodes/properties')
 const { readSettings } = require('../../nodes/settings')
@@ -23,6 +23,21 @@ describe('settings on their way to the library', () => {
     const { flowControl, dtr, rts, dataBits, parity, stopBits } = lineSettings(poolSettings(line(given)))
     assert.deepEqual([flowControl, dtr, rts, dataBits, parity, stopBits], ['rtscts', 'off', 'on', 7, 'even', 2])
     assert.equal(lineSettings(poolSettings(line({}))).flowControl, 'none')
+  })
+
+  it('a faulty row of a tag table: the others are read, in the notation of the configuration, and nothing is written', () => {
+    const lease = { line: { memory: () => ({}) } }
+    const config = { line: 'l', station: '1', addressMode: '0-base', access: 'write' }
+    const tags = [
+      { name: 'first', address: '400000' },
+      { name: 'broken', address: '4000' }
+    ]
+    const settings = { type: 'chino-config', ...readSettings('chino-config', { ...config, tags }) }
+    const { device: regulator, tagFault } = createDevice(lease, deviceSettings(settings, { name: 'a', stations: [] }))
+    assert.equal(tagFault.code, 'BAD_TAG')
+    assert.match(regulator.describe('first').goesOut, /wire address 0 /)
+    assert.throws(() => regulator.checkTarget('first', { fixed: true }), { code: 'READ_ONLY' })
+    regulator.close()
   })
 
   it('a regulator’s numbers have the same limits in the node and in the library', () => {

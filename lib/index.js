@@ -8,6 +8,7 @@ const { describeAddress, formatAddress, parseAddress } = require('./codec/nx/add
 const { PRIORITY, createPool, lineSettings, listPorts } = require('./line')
 const { createChinoRegulator } = require('./device/chino-regulator')
 const { diagnose } = require('./device/diagnose')
+const { createInconLink, openInconLink } = require('./device/incon-link')
 const { mixedConflict } = require('./device/mixed')
 const { createNxPlc } = require('./device/nx-plc')
 const { openChinoRegulator, openNxPlc } = require('./device/open')
@@ -28,6 +29,7 @@ module.exports = {
   PlcError,
   areaMap,
   createChinoRegulator,
+  createInconLink,
   createNxPlc,
   createPool,
   createReport,
@@ -46,6 +48,7 @@ module.exports = {
   modbusNotation,
   nxNotation,
   openChinoRegulator,
+  openInconLink,
   openNxPlc,
   parseAddress,
   parseItem,

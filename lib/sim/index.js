@@ -7,6 +7,7 @@ module.exports = {
   ...require('./nx-plc'),
   ...require('./chino-regulator'),
   ...require('./melsec-c24'),
+  ...require('./incon-controller'),
   ...require('./line'),
   ...require('./wire'),
   ...require('./faults'),

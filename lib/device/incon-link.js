@@ -1,0 +1,299 @@
+'use strict'
+const { PlcError } = require('../error')
+const { nextNumber, START } = require('../codec/incon/check')
+const { BUFFER, encodeLine, inconFraming } = require('../codec/incon/message')
+const { realClock } = require('../line')
+const { asPlcError } = require('./failure')
+const { blank, choice, isOn, wholeNumber } = require('./options')
+const { sharedPool } = require('./open')
+
+/**
+ * The serial link of an INCON-M84/M86/M86R: lines of text, both ways. Nothing in it confirms a line: one that has left the port is `sent`.
+ */
+
+const ENCODINGS = ['ascii', 'latin1', 'utf8']
+
+// Ends the line that was cut off in the controller's buffer, and spoils it: without it the next line would be glued to it,
+// and a cut "O1234" would be taken for "O12"
+const TORN_END = Buffer.from('?\r\n')
+
+/** What those have in common who send on one line: the number of the next checked line, and the torn lines that were ended. */
+const lines = new WeakMap()
+const memoryOf = line => {
+  const known = lines.get(line) ?? { number: START, ended: line.stats().tornWrites ?? 0 }
+  lines.set(line, known)
+  return known
+}
+
+const readSettings = given => ({
+  name: blank(given.name) ? 'INCON' : String(given.name).trim(),
+  encoding: choice('encoding', given.encoding, ENCODINGS),
+  checked: isOn(given.checked),
+  most: wholeNumber('most', given.most, { fallback: BUFFER, least: 2, most: 4096 }),
+  silence: wholeNumber('silence', given.silence, { fallback: 200, least: 0, most: 60000 }),
+  quiet: wholeNumber('quiet', given.quiet, { fallback: 50, least: 0, most: 60000 }),
+  before: wholeNumber('before', given.before, { fallback: 5, least: 0, most: 60000 }),
+  deadline: wholeNumber('deadline', given.deadline, { fallback: 0, least: 0, most: 3600000 })
+})
+
+const emptyStats = () => ({
+  received: 0,
+  incomplete: 0,
+  damaged: 0,
+  lost: 0,
+  repeated: 0,
+  sent: 0,
+  unknown: 0,
+  refused: 0,
+  failed: 0
+})
+
+/**
+ * @param {'unknown'|'refused'|'failed'} outcome @param {any} error @param {number} [bytes] that went out
+ * @returns {Outcome}
+ */
+const failure = (outcome, error, bytes = 0) => {
+  const { code, message: text } = asPlcError(error)
+  return { outcome, code, text, attempts: bytes > 0 ? 1 : 0, ms: 0, bytes }
+}
+
+/** One end of the link on a line. Made by {@link createInconLink}. */
+class InconLink {
+  #lease
+  #clock
+  #settings
+  #heard
+  #listeners = new Set()
+  #closed = false
+  #stats = emptyStats()
+
+  /** @param {Record<string, any>} options of {@link createInconLink} */
+  constructor({ lease, clock = realClock, ...given }) {
+    this.#settings = readSettings(given)
+    this.#lease = lease
+    this.#clock = clock
+    const { most, silence, encoding, checked, quiet } = this.#settings
+    const framing = inconFraming({ most, silence, ascii: encoding === 'ascii', checked })
+    this.#heard = lease.listen(framing, (message, { at }) => this.#take(message, at), { torn: { wait: quiet } })
+  }
+
+  get name() {
+    return this.#settings.name
+  }
+
+  /** Lines by what became of them; `lost`: numbers of the checked format that never came. */
+  get stats() {
+    return { ...this.#stats }
+  }
+
+  // --- receiving
+
+  #take(message, timestamp) {
+    const stats = this.#stats
+    if (message.repeated) {
+      stats.repeated++
+      return
+    }
+    stats.received++
+    if (message.kind === 'damaged') stats.damaged++
+    else if (!message.complete) stats.incomplete++
+    stats.lost += message.lost ?? 0
+    const told = this.#told(message, timestamp)
+    for (const callback of [...this.#listeners]) callback(told)
+  }
+
+  #told({ kind, bytes, complete, reason, number, lost }, timestamp) {
+    const { encoding, checked } = this.#settings
+    const text = bytes.toString(encoding === 'ascii' ? 'latin1' : encoding)
+    // where a check says no, nobody must take it for a value
+    const value = checked && kind === 'damaged' ? null : text
+    return {
+      value,
+      text,
+      bytes,
+      count: bytes.length,
+      complete,
+      timestamp,
+      ...(reason ? { reason } : {}),
+      ...(checked && complete ? { number, lost } : {})
+    }
+  }
+
+  /**
+   * @param {(line: Received) => void} callback for each line that comes, whole or not
+   * @returns {() => void} stop
+   */
+  listen(callback) {
+    const own = line => callback(line)
+    this.#listeners.add(own)
+    return () => void this.#listeners.delete(own)
+  }
+
+  // --- sending
+
+  /**
+   * Sends one line; lines go out in the order of the calls, each followed by the quiet time.
+   * @param {string|number|Uint8Array} value text of printable characters, or bytes as they are; at most 253 (246 in the checked format)
+   * @param {{ deadline?: number }} [options] ms that it may wait for its turn; 0: no limit
+   * @returns {Promise<Outcome>} never rejects
+   */
+  async send(value, { deadline = this.#settings.deadline } = {}) {
+    const start = this.#clock.now()
+    const outcome = await this.#outcome(value, deadline)
+    this.#stats[outcome.outcome]++
+    return { ...outcome, ms: outcome.ms || this.#clock.now() - start }
+  }
+
+  /** @returns {Promise<Outcome>} */
+  async #outcome(value, deadline) {
+    const { line } = this.#lease
+    const memory = memoryOf(line)
+    if (this.#closed) return failure('failed', new PlcError('LINE_CLOSED', { line: line.name }))
+    let bytes
+    try {
+      bytes = encodeLine(value, { ...this.#settings, number: memory.number })
+    } catch (error) {
+      return failure('refused', error)
+    }
+    if (this.#settings.checked) memory.number = nextNumber(memory.number)
+    try {
+      this.#endTorn(memory)
+      const { ms } = await this.#put(bytes, deadline)
+      return { outcome: 'sent', attempts: 1, ms, bytes: bytes.length }
+    } catch (/** @type {any} */ error) {
+      const sent = Number(error?.details?.sent) || 0
+      return failure(sent > 0 ? 'unknown' : 'failed', error, sent)
+    }
+  }
+
+  #put(bytes, deadline = 0) {
+    const { before, quiet } = this.#settings
+    return this.#lease.send(bytes, { quiet: before, after: quiet, deadline, label: this.name })
+  }
+
+  /** A line was cut off: it is ended before the next one, once for all who send here. */
+  #endTorn(memory) {
+    const torn = this.#lease.line.stats().tornWrites ?? 0
+    const already = memory.ended
+    memory.ended = torn
+    if (torn === already) return
+    this.#put(TORN_END).catch(error => {
+      // it did not go out: it is needed still (if it was torn itself, the line has counted it)
+      if (!(error?.details?.sent > 0)) memory.ended = already
+    })
+  }
+
+  /** What waits is still settled by the line; the lease stays its owner's. Any number of times. */
+  close() {
+    this.#closed = true
+    this.#listeners.clear()
+    this.#heard.close()
+  }
+}
+
+/**
+ * The serial link of an INCON controller on a line.
+ *
+ * @param {object} options
+ * @param {any} options.lease of the line, from `pool.open`
+ * @param {string} [options.name]
+ * @param {'ascii'|'latin1'|'utf8'} [options.encoding] of text; default ascii: other bytes that come are marked as damage
+ * @param {boolean} [options.checked] lines are `#NN text*HH` both ways (codec/incon/check.js); default false
+ * @param {number} [options.most] bytes of a line that comes, with its end: 2 to 4096, default 256
+ * @param {number} [options.silence] ms after which a line without line feed is delivered as torn, default 200; 0: never
+ * @param {number} [options.quiet] ms after each line that is sent, default 50: at least two scans of the controller's PLC and some, or it may see two
+ *   lines as one
+ * @param {number} [options.before] ms of silence on the line before one is sent, default 5
+ * @param {number} [options.deadline] ms that a line may wait for its turn, default no limit
+ * @param {any} [options.clock] for the times of outcomes
+ * @returns {InconLink}
+ * @throws {PlcError} BAD_SETTING, LINE_USE, LINE_CLOSED
+ */
+const createInconLink = options => new InconLink(options)
+
+/** A link with a line of its own. */
+class InconConnection {
+  #link
+  #lease
+
+  /** @param {{ link: InconLink, lease: any }} parts */
+  constructor({ link, lease }) {
+    this.#link = link
+    this.#lease = lease
+  }
+
+  get link() {
+    return this.#link
+  }
+
+  /** `state`, `reason`, `stats()`, `trace()`, and events by `on` and `off`. */
+  get line() {
+    return this.#lease.line
+  }
+
+  /** @param {string|number|Uint8Array} value @param {{ deadline?: number }} [options] as of {@link InconLink} */
+  send(value, options) {
+    return this.#link.send(value, options)
+  }
+
+  /** @param {(line: Received) => void} callback @returns {() => void} stop */
+  listen(callback) {
+    return this.#link.listen(callback)
+  }
+
+  /** Ends all and gives the line back. @returns {Promise<void>} */
+  close() {
+    this.#link.close()
+    return this.#lease.release()
+  }
+}
+
+/**
+ * An INCON controller on a line of its own settings, for use without Node-RED. Links with the same settings share a wire.
+ *
+ * ```js
+ * const link = openInconLink({ path: '/dev/ttyUSB0', baudRate: 9600 })
+ * link.listen(({ value, complete }) => console.log(value, complete))
+ * await link.send('O1234')   // { outcome: 'sent', … }: it has left the port, nobody confirms it
+ * await link.close()
+ * ```
+ * @param {Record<string, any>} options all of `lineSettings` (path, or host and port) and of `createInconLink`; `pool`: another than the shared one
+ * @returns {InconConnection}
+ * @throws {PlcError} BAD_SETTING, WIRE_CONFLICT, LINE_USE
+ */
+const openInconLink = ({ pool = sharedPool(), ...options }) => {
+  const transport = options.transport ?? (options.host ? 'tcp' : 'serial')
+  const name = options.name ?? 'INCON'
+  // the name is the link's; the line is called by its path
+  const lease = pool.open({ ...options, name: '', transport }, { id: name, name })
+  try {
+    return new InconConnection({ link: createInconLink({ ...options, name, lease }), lease })
+  } catch (error) {
+    lease.release()
+    throw error
+  }
+}
+
+/**
+ * @typedef {object} Received
+ * @property {string|null} value the text; null if it is damaged by its own check
+ * @property {string} text what came, even so
+ * @property {Buffer} bytes
+ * @property {number} count bytes
+ * @property {boolean} complete one whole line, as far as can be known
+ * @property {import('../codec/incon/message').Reason} [reason] why it is not
+ * @property {number} timestamp epoch ms
+ * @property {number|null} [number] checked format
+ * @property {number} [lost] checked format: lines that are missing before this one
+ *
+ * @typedef {object} Outcome
+ * @property {'sent'|'unknown'|'refused'|'failed'} outcome sent: every byte has left the port, nobody confirms it; unknown: it was interrupted; refused:
+ *   it cannot be a line; failed: nothing went out
+ * @property {string} [code]
+ * @property {string} [text]
+ * @property {number} attempts 0 or 1
+ * @property {number} ms from the call to the outcome
+ * @property {number} bytes that went out
+ */
+
+module.exports = { InconLink, createInconLink, openInconLink }

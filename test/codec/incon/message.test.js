@@ -1,0 +1,214 @@
+'use strict'
+
+const assert = require('node:assert')
+const { missingBetween, nextNumber, seal, unseal } = require('../../../lib/codec/incon/check')
+const { createLineSplitter, encodeLine, inconFraming } = require('../../../lib/codec/incon/message')
+const { createRandom } = require('../../../lib/sim')
+
+const text = message => `${message.bytes.toString('latin1')}${message.complete ? '' : ` (${message.reason})`}`
+const split = (bytes, options) => {
+  const splitter = createLineSplitter(options)
+  return [...splitter.push(Buffer.from(bytes, 'latin1')), ...splitter.flush()].map(text)
+}
+const refused = (code, value, options) => assert.throws(() => encodeLine(value, options), { code })
+// not ours: XOR digit by digit, as a PLC's program would do it
+const sealed = body => {
+  let check = 0
+  for (const letter of body) check ^= letter.charCodeAt(0)
+  return `${body}*${'0123456789ABCDEF'[check >> 4]}${'0123456789ABCDEF'[check & 15]}`
+}
+
+describe('INCON lines received', () => {
+  // 2.14.3: the example sends `Test` CR LF
+  const CASES = [
+    ['Test\r\n', ['Test']],
+    ['Test\n', ['Test']],
+    ['\r\n\n\r\nTest\r\n\r\n', ['Test']],
+    ['A\r\nB\nC\r\n', ['A', 'B', 'C']],
+    ['A\n\rB\n\r', ['A', 'B']],
+    ['A\r\r\n', ['A (noLineFeed)']],
+    ['A\rB\r\n', ['A (noLineFeed)', 'B']],
+    ['A\tB\r\n', ['A\tB']],
+    ['A\r\nB', ['A', 'B (silence)']],
+    ['A\r', ['A (silence)']],
+    ['\r', []],
+    ['A\0B\r\nC\r\n', ['A\0B (unprintable)', 'C']],
+    ['A\x80\n', ['A\x80 (unprintable)']]
+  ]
+  for (const [bytes, expected] of CASES) {
+    it(`${JSON.stringify(bytes)} → ${JSON.stringify(expected)}`, () => assert.deepStrictEqual(split(bytes), expected))
+    it(`${JSON.stringify(bytes)} in any two pieces`, () => {
+      for (let at = 0; at <= bytes.length; at++) {
+        const splitter = createLineSplitter()
+        const [one, two] = [bytes.slice(0, at), bytes.slice(at)].map(piece => Buffer.from(piece, 'latin1'))
+        const messages = [...splitter.push(one), ...splitter.push(two), ...splitter.flush()]
+        assert.deepStrictEqual(messages.map(text), expected, `cut at ${at}`)
+        assert.strictEqual(splitter.held, 0)
+      }
+    })
+  }
+
+  it('a buffer of 256 bytes holds a line of 254 with CR LF; without a line feed it is delivered when it is full', () => {
+    const long = 'x'.repeat(254)
+    assert.deepStrictEqual(split(`${long}\r\nB\r\n`), [long, 'B'])
+    assert.deepStrictEqual(split(`${long}yz\r\nB\r\n`), [`${long}yz (full)`, 'B'])
+    assert.deepStrictEqual(split(`${long}yz1234\r\nB\r\n`), [`${long}yz (full)`, '1234 (tail)', 'B'])
+    assert.deepStrictEqual(split('abcdefgh\nB\n', { most: 3 }), ['abc (full)', 'def (full)', 'gh (tail)', 'B'])
+  })
+
+  it('what is held when the port opens anew is told as torn, and does not run into what follows', () => {
+    const splitter = createLineSplitter()
+    splitter.push(Buffer.from('O12'))
+    assert.strictEqual(splitter.held, 3)
+    assert.deepStrictEqual(splitter.reset().map(text), ['O12 (reopened)'])
+    assert.deepStrictEqual(splitter.reset(), [])
+    assert.deepStrictEqual(splitter.push(Buffer.from('O9\r\n')).map(text), ['O9'])
+  })
+
+  it('bytes beyond ASCII are text where the encoding is another', () => {
+    assert.deepStrictEqual(split('A\x80\n', { ascii: false }), ['A\x80'])
+  })
+
+  it('the key of a framing names all that makes lines different', () => {
+    const keys = [{}, { most: 100 }, { silence: 100 }, { ascii: false }, { checked: true }].map(
+      each => inconFraming(each).key
+    )
+    assert.strictEqual(new Set(keys).size, 5)
+    assert.strictEqual(inconFraming({ most: 256 }).key, inconFraming().key)
+    assert.strictEqual(inconFraming({ silence: 300 }).create().silence, 300)
+  })
+
+  it('100,000 random bytes, in random pieces: nothing is lost or added but line ends, and no line is longer than a buffer', () => {
+    const random = createRandom(7)
+    const splitter = createLineSplitter({ most: 16, ascii: false })
+    const all = Buffer.concat(
+      Array.from({ length: 100000 }, () =>
+        Buffer.of(random.pick([10, 13, random.integer(0, 255), random.integer(0, 255)]))
+      )
+    )
+    const got = []
+    for (let at = 0; at < all.length;) {
+      const piece = all.subarray(at, (at += random.integer(1, 40)))
+      got.push(...splitter.push(piece))
+    }
+    got.push(...splitter.flush())
+    const bare = bytes => bytes.toString('latin1').replace(/[\r\n]/g, '')
+    assert.strictEqual(got.map(({ bytes }) => bare(bytes)).join(''), bare(all))
+    assert.ok(got.every(({ bytes }) => bytes.length > 0 && bytes.length <= 16 && !bytes.includes(10)))
+    assert.ok(got.every(({ complete, bytes }) => !complete || !bytes.includes(13)))
+  })
+})
+
+describe('INCON lines sent', () => {
+  const sent = (value, options) => encodeLine(value, options).toString('latin1')
+
+  it('end with CR LF, once', () => {
+    assert.strictEqual(sent('Test'), 'Test\r\n')
+    assert.strictEqual(sent('Test\n'), 'Test\r\n')
+    assert.strictEqual(sent('Test\r\n'), 'Test\r\n')
+    assert.strictEqual(sent(1234), '1234\r\n')
+    assert.strictEqual(sent(Buffer.from([0x80, 0x07])), '\x80\x07\r\n')
+  })
+
+  it("hold at most 255 bytes: the manual's strCopy writes past its array at 256", () => {
+    assert.strictEqual(encodeLine('x'.repeat(253)).length, 255)
+    refused('FRAME_TOO_LONG', 'x'.repeat(254))
+    assert.strictEqual(encodeLine('x'.repeat(246), { checked: true }).length, 255)
+    refused('FRAME_TOO_LONG', 'x'.repeat(247), { checked: true })
+  })
+
+  it('what cannot be a line is refused', () => {
+    for (const value of ['', '\n', '\r\n', Buffer.alloc(0), null, undefined, true, {}, [], NaN])
+      refused('BAD_VALUE', value)
+    for (const value of ['A\nB', 'A\0', 'A\rB', 'A\tB', 'Größe', '프로그램', 'A\x7f']) refused('BAD_VALUE', value)
+    refused('BAD_VALUE', Buffer.from('A\nB'))
+    refused('BAD_VALUE', Buffer.from('A\0B'))
+    refused('BAD_VALUE', '프로그램', { encoding: 'latin1' })
+  })
+
+  it('other encodings where they are set', () => {
+    assert.strictEqual(sent('Größe', { encoding: 'latin1' }), 'Gr\xf6\xdfe\r\n')
+    assert.strictEqual(encodeLine('가', { encoding: 'utf8' }).toString('hex'), 'eab0800d0a')
+  })
+})
+
+describe('INCON checked lines', () => {
+  // #01 A: 23^30^31^20^41 = 43h
+  it('number, text and the XOR of both', () => {
+    assert.strictEqual(encodeLine('A', { checked: true, number: 1 }).toString(), '#01 A*43\r\n')
+    assert.strictEqual(`${seal(Buffer.from('O1234'), 99)}`, sealed('#99 O1234'))
+    assert.deepStrictEqual(unseal(Buffer.from('#01 A*43')), { text: Buffer.from('A'), number: 1 })
+    assert.deepStrictEqual(unseal(Buffer.from(sealed('no number'))), { text: Buffer.from('no number'), number: null })
+    assert.deepStrictEqual(unseal(Buffer.from(sealed('#1x A'))), { text: Buffer.from('#1x A'), number: null })
+    assert.deepStrictEqual(unseal(Buffer.from(sealed('#05 a*b'))), { text: Buffer.from('a*b'), number: 5 })
+  })
+
+  it('what does not fit is damaged', () => {
+    for (const line of ['', 'A', '*4', '#01 A', '#01 A*4', '#01 A*4G', '#01 A*43 ']) {
+      assert.deepStrictEqual(unseal(Buffer.from(line)), { reason: 'noCheck' }, line)
+    }
+    assert.deepStrictEqual(unseal(Buffer.from('#01 A*42')), { reason: 'check' })
+    assert.deepStrictEqual(split('#01 A*43\rB\n#02 A*40\n', { checked: true }), [
+      '#01 A*43 (noLineFeed)',
+      'B (noCheck)',
+      'A'
+    ])
+  })
+
+  it('any one damaged bit, any one lost byte, is seen or harmless', () => {
+    const whole = Buffer.from('#07 O1234 T5*')
+    const line = Buffer.from(sealed(whole.toString('latin1', 0, whole.length - 1)))
+    const same = ({ text: one = null }) => one === null || one.toString() === 'O1234 T5'
+    for (let bit = 0; bit < line.length * 8; bit++) {
+      const copy = Buffer.from(line)
+      copy[bit >> 3] ^= 1 << (bit & 7)
+      assert.ok(same(/** @type {any} */ (unseal(copy))), copy.toString('latin1'))
+    }
+    for (let at = 0; at < line.length; at++) {
+      const copy = Buffer.concat([line.subarray(0, at), line.subarray(at + 1)])
+      assert.ok('reason' in unseal(copy), copy.toString())
+    }
+  })
+
+  it('numbers: 00 after a start, then 01 to 99 and 01 again; a gap tells how many are missing', () => {
+    assert.deepStrictEqual([0, 1, 98, 99].map(nextNumber), [1, 2, 99, 1])
+    for (let last = 0; last <= 99; last++) {
+      let number = last
+      for (let lost = 0; lost < 98; lost++) {
+        number = nextNumber(number)
+        assert.strictEqual(missingBetween(last, number), lost)
+      }
+    }
+    assert.deepStrictEqual([missingBetween(null, 5), missingBetween(5, 0), missingBetween(5, null)], [0, 0, 0])
+  })
+
+  it('a line that comes again is marked, but a start may begin with the same words', () => {
+    const splitter = createLineSplitter({ checked: true })
+    const lines = ['#00 ON', '#00 ON', '#01 A', '#01 A', '#04 B', '#04 C'].map(each => `${sealed(each)}\r\n`)
+    const got = splitter.push(Buffer.from(lines.join('')))
+    assert.deepStrictEqual(
+      got.map(({ bytes, lost, repeated = false }) => [bytes.toString(), lost, repeated]),
+      [
+        ['ON', 0, false],
+        ['ON', 0, false],
+        ['A', 0, false],
+        ['A', 0, true],
+        ['B', 2, false],
+        ['C', 98, false]
+      ]
+    )
+  })
+
+  it('of random lines that look right one in 256 passes the check, as by theory', () => {
+    const random = createRandom(3)
+    let passed = 0
+    const tries = 200000
+    for (let n = 0; n < tries; n++) {
+      const line = Buffer.from(`#01 ........*${random.integer(0, 255).toString(16).toUpperCase().padStart(2, '0')}`)
+      random.bytes(8).copy(line, 4)
+      if (!('reason' in unseal(line))) passed++
+    }
+    const expected = tries / 256
+    assert.ok(Math.abs(passed - expected) < 4 * Math.sqrt(expected), `${passed}, expected ${expected}`)
+  })
+})

@@ -131,7 +131,7 @@ const fill = (text, facts) => text.replace(/\{(\w+)\}/g, (_, name) => String(fac
  */
 const cause = (code, facts) => {
   const [text, remedy] = CAUSES[code]
-  const names = [...(text + remedy).matchAll(/\{(\w+)\}/g)].map(([, name]) => name)
+  const names = [...`${text} ${remedy}`.matchAll(/\{(\w+)\}/g)].map(([, name]) => name)
   const details = Object.fromEntries(names.map(name => [name, facts[name] ?? '']))
   return { code, text: fill(text, facts), remedy: fill(remedy, facts), details }
 }

@@ -1,0 +1,120 @@
+'use strict'
+const assert = require('node:assert/strict')
+const fc = require('fast-check')
+const { fromAscii, toAscii } = require('../../../lib/codec/melsec/ascii-binary')
+const convert = require('../../../lib/codec/melsec/convert')
+const { IMAGE, TEXT, bytes } = require('../../vectors/melsec')
+
+const { ENCODINGS, bytesToValue, bytesToWords, decodeText, encodeText, valueToBytes, wordsToBytes } = convert
+const code = wanted => error => error.code === wanted
+const to = (value, format = 'text', encoding = 'latin1') => valueToBytes(value, { format, encoding })
+
+describe('MELSEC values', () => {
+  it('words have their low byte first', () => {
+    assert.deepEqual(wordsToBytes(IMAGE.words), Buffer.from(TEXT))
+    assert.deepEqual(bytesToWords(Buffer.from(TEXT)), IMAGE.words)
+    assert.deepEqual(bytesToWords(Buffer.from('ABC')), [0x4241, 0x43])
+    assert.deepEqual(to([1, -1, 0x8000, 65535], 'words'), bytes('01 00 FF FF 00 80 FF FF'))
+    assert.deepEqual(to(258, 'words'), bytes('02 01'))
+    assert.deepEqual(to(new Uint16Array([258]), 'words'), bytes('02 01'))
+  })
+
+  it('bytes, and a Buffer in every format', () => {
+    assert.deepEqual(to([0, 255], 'bytes'), bytes('00 FF'))
+    for (const format of ['text', 'bytes', 'words']) assert.deepEqual(to(bytes('00 FF 01'), format), bytes('00 FF 01'))
+  })
+
+  it('text', () => {
+    assert.deepEqual(to('Ä'), bytes('C4'))
+    assert.deepEqual(to(12.5), Buffer.from('12.5'))
+    assert.deepEqual(to('한', 'text', 'utf8'), bytes('ED 95 9C'))
+    // KS X 1001 0x1A51 row "가" = B0A1, "한" = C7D1; JIS X 0208 "あ" = 82A0, half width "ｱ" = B1
+    assert.deepEqual(to('가한A', 'text', 'euc-kr'), bytes('B0 A1 C7 D1 41'))
+    assert.deepEqual(to('あｱ', 'text', 'shift_jis'), bytes('82 A0 B1'))
+    assert.deepEqual(to('A\r\n\0~', 'text', 'euc-kr'), bytes('41 0D 0A 00 7E'))
+  })
+
+  it('refuses what would go out as something else', () => {
+    const wrong = [
+      ['가', 'text', 'latin1'],
+      ['Ä', 'text', 'ascii'],
+      ['é', 'text', 'euc-kr'],
+      ['\ud800', 'text', 'utf8'],
+      [[1, 2], 'text'],
+      [null, 'text'],
+      [NaN, 'text'],
+      [{}, 'text'],
+      [[256], 'bytes'],
+      ['AB', 'bytes'],
+      [[1.5], 'words'],
+      [[65536], 'words'],
+      [[-32769], 'words'],
+      ['258', 'words'],
+      [[null], 'words'],
+      [[true], 'words'],
+      [new Array(2), 'words']
+    ]
+    for (const [value, format, encoding] of wrong) {
+      assert.throws(
+        () => to(value, /** @type {any} */ (format), encoding),
+        code('BAD_VALUE'),
+        `${String(value)} ${format}`
+      )
+    }
+  })
+
+  it('bytes that are no characters are told', () => {
+    assert.deepEqual(decodeText(bytes('41 C1'), 'ascii'), { text: 'A\ufffd', valid: false })
+    assert.equal(decodeText(bytes('ED 95'), 'utf8').valid, false)
+    assert.equal(decodeText(bytes('EF BF BD'), 'utf8').valid, true)
+    assert.equal(decodeText(bytes('B0'), 'euc-kr').valid, false)
+    assert.equal(decodeText(bytes('EF BB BF 41'), 'utf8').text.length, 2)
+    assert.equal(decodeText(bytes('C7 D1'), 'euc-kr').text, '한')
+  })
+
+  it('what a flow gets', () => {
+    const body = Buffer.from('ABC')
+    assert.equal(bytesToValue(body, { format: 'text', encoding: 'latin1' }).value, 'ABC')
+    assert.deepEqual(bytesToValue(body, { format: 'words', encoding: 'latin1' }).value, [0x4241, 0x43])
+    assert.deepEqual(bytesToValue(body, { format: 'bytes', encoding: 'latin1' }).value, body)
+  })
+
+  it('text there and back, in every encoding', () => {
+    const characters = [...'ABZ az09~!', ...'가나힣漢字', ...'あアｱ本', ...'äöüÿ'].join('')
+    for (const encoding of ENCODINGS) {
+      const known = [...characters].filter(character => {
+        try {
+          return encodeText(character, encoding)
+        } catch {
+          return false
+        }
+      })
+      assert.ok(known.length >= 10, encoding)
+      fc.assert(
+        fc.property(fc.array(fc.constantFrom(...known)), list => {
+          const value = list.join('')
+          assert.deepEqual(decodeText(encodeText(value, encoding), encoding), { text: value, valid: true })
+        }),
+        { numRuns: 50 }
+      )
+    }
+  })
+})
+
+describe('MELSEC ASCII-binary conversion', () => {
+  it('two capital hexadecimal characters a byte', () => {
+    // application manual, 13.3: 0212H, BC3AH
+    assert.deepEqual(toAscii(bytes('12 02 3A BC')), bytes('31 32 30 32 33 41 42 43'))
+    assert.deepEqual(fromAscii(bytes('31 32 30 32 33 41 42 43')), bytes('12 02 3A BC'))
+  })
+
+  it('refuses what is no hexadecimal character', () => {
+    for (const text of ['1', '1g', 'ab', '1 ', '/0', ':0', '@0', 'G0'])
+      assert.equal(fromAscii(Buffer.from(text)), null, text)
+    assert.deepEqual(fromAscii(Buffer.alloc(0)), Buffer.alloc(0))
+  })
+
+  it('there and back', () => {
+    fc.assert(fc.property(fc.uint8Array(), body => assert.deepEqual([...(fromAscii(toAscii(body)) ?? [])], [...body])))
+  })
+})

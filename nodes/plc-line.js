@@ -2,9 +2,10 @@
 const { PlcError, listPorts, masterIdsOf, mixedConflict } = require('../lib/index.js')
 const { kindOf } = require('./device-settings')
 const { poolSettings } = require('./line-settings')
+const { listenerHolder } = require('./listeners')
 const { sharedPool } = require('./pool')
 const { readSettings } = require('./settings')
-const { simulatedWire } = require('./simulated')
+const { simulatedLine } = require('./simulated')
 
 const nameOf = node => node.name || node.id
 
@@ -24,32 +25,38 @@ const memberOf = ({ settings, station, label }) => ({
   name: label
 })
 
+/** @throws {PlcError} LINE_USE: a line that is listened to is not polled */
+const checkUse = (line, deviceNode) => {
+  const [other] = line.listeners.names()
+  if (!other) return line.listeners.dropOrphans()
+  const reason = 'the one asks stations, the other listens to messages'
+  throw new PlcError('LINE_USE', { owner: nameOf(deviceNode), other, line: nameOf(line), reason })
+}
+
 /**
  * Who is on the line: one configuration per station, and numbers that cannot be mistaken for each other.
  * @param {any} line the config node
  */
 const stationList = line => {
   const members = new Map()
-
+  const names = (one, other) => ({ owner: nameOf(one), other: nameOf(other), line: nameOf(line) })
   const checkNumber = deviceNode => {
     const other = members.get(deviceNode.station)
     if (!other || other.id === deviceNode.id) return
-    const names = { owner: nameOf(deviceNode), other: nameOf(other), line: nameOf(line) }
-    throw new PlcError('DUPLICATE_STATION', { ...names, station: deviceNode.station })
+    throw new PlcError('DUPLICATE_STATION', { ...names(deviceNode, other), station: deviceNode.station })
   }
   const checkMixed = deviceNode => {
     const one = memberOf(deviceNode)
     for (const other of members.values()) {
       const reason = mixedConflict(one, memberOf(other))
-      if (!reason) continue
-      const names = { owner: nameOf(deviceNode), other: nameOf(other), line: nameOf(line) }
-      throw new PlcError('MIXED_LINE', { ...names, reason })
+      if (reason) throw new PlcError('MIXED_LINE', { ...names(deviceNode, other), reason })
     }
   }
 
   return {
-    /** @throws {PlcError} DUPLICATE_STATION, MIXED_LINE, naming both */
+    /** @throws {PlcError} LINE_USE, DUPLICATE_STATION, MIXED_LINE, naming both */
     join(deviceNode) {
+      checkUse(line, deviceNode)
       checkNumber(deviceNode)
       checkMixed(deviceNode)
       members.set(deviceNode.station, deviceNode)
@@ -68,7 +75,8 @@ const stationList = line => {
         if (absent()) line.wire.remove(settings.station)
       }
     },
-    stations: () => [...members.keys()]
+    stations: () => [...members.keys()],
+    members: () => [...members.values()]
   }
 }
 
@@ -86,9 +94,9 @@ module.exports = function (RED) {
     this.users = {}
     this.fault = null
     try {
-      const settings = readSettings('plc-line', config)
+      const settings = /** @type {any} */ (readSettings('plc-line', config))
       this.simulated = settings.transport === 'simulated'
-      this.wire = this.simulated ? simulatedWire({ baudRate: settings.baudRate }) : undefined
+      this.wire = this.simulated ? simulatedLine(settings) : undefined
       const wire = this.simulated ? { wire: this.wire.wire, path: this.id } : {}
       this.settings = poolSettings({ ...settings, name: settings.name || '', ...wire })
     } catch (error) {
@@ -96,6 +104,13 @@ module.exports = function (RED) {
       this.error(error)
     }
     this.plcs = stationList(this)
+    this.listeners = listenerHolder(this, RED.events)
+    this.on('close', (_removed, done) => {
+      this.listeners.close().then(
+        () => done(),
+        () => done()
+      )
+    })
     this.lease = owner => {
       if (this.fault) throw this.fault
       return sharedPool().open(this.settings, owner)

@@ -5,13 +5,15 @@
  * compares it with the defaults of the .html files, and docs/nodes.md lists it. Pure: it imports nothing, so that the browser can have it too.
  */
 
-/** @typedef {{ kind: string, fallback: any, least?: number, most?: number, known?: string[], whole?: boolean, except?: [number, number], needed?: boolean, says?: string, isStation?: boolean }} Row */
+/** @typedef {{ kind: string, fallback: any, least?: number, most?: number, known?: string[], whole?: boolean, except?: [number, number], needed?: boolean, says?: string, isStation?: boolean, blank?: boolean }} Row */
 
 const text = (fallback = '', more = {}) => ({ kind: 'text', fallback, ...more })
 const number = (fallback, least, most, more = {}) => ({ kind: 'number', fallback, least, most, whole: true, ...more })
 const choice = (fallback, ...known) => ({ kind: 'choice', fallback, known })
 const flag = (fallback = false) => ({ kind: 'flag', fallback })
 const list = () => ({ kind: 'list', fallback: [] })
+/** Bytes as hexadecimal text; an empty one is none, not the default. */
+const bytes = (fallback, most) => ({ kind: 'bytes', fallback, most, blank: true, says: `0 to ${most} bytes in hex` })
 const node = () => ({ kind: 'node', fallback: '', needed: true })
 
 /** What a node that reads has beside its device. */
@@ -35,6 +37,13 @@ const WRITING = {
   coalesce: flag(),
   topic: choice('item', 'item', 'keep', 'fixed'),
   topicText: text()
+}
+
+/** What a node that sends and receives messages has beside its framing. */
+const SENDING = {
+  access: choice('read', 'read', 'write'),
+  onFailure: choice('error', 'error', 'output'),
+  acceptRetained: flag()
 }
 
 /** @type {Record<string, Record<string, Row>>} */
@@ -112,6 +121,45 @@ const PROPERTIES = {
     mode: choice('read', 'read', 'write', 'both'),
     ...READING,
     ...WRITING
+  },
+  'melsec-c24': {
+    name: text(),
+    line: node(),
+    bidirectional: flag(),
+    framing: choice('end', 'end', 'count', 'gap'),
+    end: bytes('0D 0A', 2),
+    count: number(0, 0, 16384),
+    gap: number(0, 0, 60000),
+    format: choice('text', 'text', 'bytes', 'words'),
+    encoding: choice('latin1', 'latin1', 'utf8', 'ascii', 'euc-kr', 'shift_jis'),
+    unit: choice('word', 'word', 'byte'),
+    ...SENDING,
+    padEven: flag(),
+    quiet: number(0, 0, 60000),
+    timer0: number(0, 0, 600000),
+    tornEnd: flag(),
+    flow: choice('none', 'none', 'dc', 'driver'),
+    transparent: bytes('', 11),
+    room: number(64, 1, 4095),
+    stallLimit: number(30000, 100, 3600000),
+    asciiBinary: flag(),
+    first: bytes('', 80),
+    last: bytes('', 80),
+    most: number(16384, 1, 65536),
+    sumCheck: flag(true),
+    ackTimeout: number(1000, 10, 600000),
+    priority: choice('c24', 'c24', 'us')
+  },
+  'incon-link': {
+    name: text(),
+    line: node(),
+    encoding: choice('ascii', 'ascii', 'latin1', 'utf8'),
+    checked: flag(),
+    most: number(256, 2, 4096),
+    silence: number(200, 0, 60000),
+    ...SENDING,
+    quiet: number(50, 0, 60000),
+    before: number(5, 0, 60000)
   }
 }
 
@@ -134,7 +182,16 @@ const readFlag = given => {
 const readChoice = (row, given) =>
   row.known.includes(String(given)) ? { value: String(given) } : { problem: 'choice' }
 
+const HEX = /^(?:[0-9a-f]{2})*$/i
+
+const readBytes = (row, given) => {
+  const digits = String(given).replace(/\s/g, '')
+  const known = HEX.test(digits) && digits.length <= row.most * 2
+  return known ? { value: (digits.match(/../g) ?? []).join(' ').toUpperCase() } : { problem: 'bytes' }
+}
+
 const READERS = {
+  bytes: readBytes,
   number: readNumber,
   choice: readChoice,
   flag: (_row, given) => readFlag(given),
@@ -147,10 +204,11 @@ const READERS = {
  * Reads one property as it was saved: missing or empty means its default, numbers and flags may be texts, `${NAME}` is a variable that was not filled in.
  * @param {Row} row
  * @param {any} given
- * @returns {{ value?: any, problem?: string, variable?: string }} `problem`: missing, number, whole, range, except, flag, choice or list
+ * @returns {{ value?: any, problem?: string, variable?: string }} `problem`: missing, number, whole, range, except, flag, choice, list or bytes
  */
 const readProperty = (row, given) => {
-  const missing = given === undefined || given === null || (typeof given === 'string' && given.trim() === '')
+  const empty = typeof given === 'string' && given.trim() === '' && !row.blank
+  const missing = given === undefined || given === null || empty
   if (missing)
     return row.needed && row.fallback === '' ? { problem: 'missing', value: row.fallback } : { value: row.fallback }
   const variable = typeof given === 'string' ? VARIABLE.exec(given.trim()) : null
@@ -163,7 +221,8 @@ const readProperty = (row, given) => {
  * @param {Row} row
  */
 const allowed = row => {
-  if (row.kind === 'number') return row.says ?? `${row.least} to ${row.most}`
+  if (row.says) return row.says
+  if (row.kind === 'number') return `${row.least} to ${row.most}`
   return row.known ? row.known.join(', ') : row.kind
 }
 
@@ -172,11 +231,20 @@ const TRANSPORTS = { path: 'serial', host: 'tcp', port: 'tcp' }
 
 const unused = (mode, name) => (mode === 'read' && name in WRITING) || (mode === 'write' && name in READING)
 
+const UNIDIRECTIONAL = ['framing', 'end', 'count', 'first', 'last', 'timer0', 'tornEnd']
+const FRAMINGS = { end: 'end', count: 'count' }
+
+const isOn = value => value === true || value === 'true'
+
+const unusedByC24 = (name, { framing = 'end', bidirectional = false }) =>
+  isOn(bidirectional) ? UNIDIRECTIONAL.includes(name) : Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing
+
 /**
  * Whether a property counts at all with the others as they are.
  * @param {string} type @param {string} name @param {Record<string, any>} config
  */
 const applies = (type, name, config) => {
+  if (type === 'melsec-c24') return !unusedByC24(name, config)
   if (type === 'plc-line') return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || 'serial')
   return type !== 'chino-regulator' || !unused(config.mode || 'read', name)
 }

@@ -54,7 +54,10 @@ const deployReport = (RED, node) => {
 const DEVICES = {
   'nx-read': { property: 'plc', of: 'nx-config' },
   'nx-write': { property: 'plc', of: 'nx-config' },
-  'chino-regulator': { property: 'regulator', of: 'chino-config' }
+  'chino-regulator': { property: 'regulator', of: 'chino-config' },
+  // who listens has no configuration of a device: it sits on the line itself
+  'melsec-c24': { property: 'line', of: 'plc-line' },
+  'incon-link': { property: 'line', of: 'plc-line' }
 }
 
 const findDevice = (RED, { type, settings, node }) => {
@@ -67,10 +70,11 @@ const findDevice = (RED, { type, settings, node }) => {
 /**
  * What the nodes of the flow have in common: their settings, the device with its line, the status, and a close that always ends.
  * @param {any} RED @param {any} node
- * @param {{ type: string, config: any, start: (session: any) => (() => void) | void }} own `start` runs if the configuration is
- *   usable and may throw a PlcError; it returns what stops it
+ * @param {{ type: string, config: any, start: (session: any) => (() => void) | void, seat?: (found: any, session: any) => any }} own
+ *   `start` runs if the configuration is usable and may throw a PlcError; it returns what stops it. `seat` makes what the node attaches
+ *   to of the configuration node that was found
  */
-const openSession = (RED, node, { type, config, start }) => {
+const openSession = (RED, node, { type, config, start, seat = found => found }) => {
   const display = statusDisplay(RED, node)
   const report = deployReport(RED, node)
   /** @type {any} */
@@ -79,7 +83,7 @@ const openSession = (RED, node, { type, config, start }) => {
   let stop
   const attached = () => {
     session.settings = readSettings(type, config)
-    session.deviceNode = findDevice(RED, { type, settings: session.settings, node })
+    session.deviceNode = seat(findDevice(RED, { type, settings: session.settings, node }), session)
     display.simulated(session.deviceNode.simulated)
     session.device = session.deviceNode.attach(node, line => display.update({ line }))
     stop = start(session)

@@ -10,7 +10,8 @@ const REASONS = {
   except: row => `allowed is ${allowed(row)}`,
   choice: row => `known are ${allowed(row)}`,
   flag: () => 'true or false is needed',
-  list: () => 'a list is needed'
+  list: () => 'a list is needed',
+  bytes: row => `allowed is ${allowed(row)}, as 0D 0A`
 }
 
 const shown = value => (value === undefined || value === null || value === '' ? 'empty' : value)

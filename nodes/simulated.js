@@ -1,5 +1,6 @@
 'use strict'
 const { DEMO, createChinoRegulator, createNxPlc, createRealClock, createWire } = require('../lib/sim/index.js')
+const { simulatedPeer } = require('./simulated-listening')
 
 // what the examples show beside the simulator's own demo values: K0 is a set value in tenths, M10 follows it, M11 is a load
 const EXAMPLES = [
@@ -73,4 +74,34 @@ const simulatedWire = ({ baudRate }) => {
   }
 }
 
-module.exports = { simulatedWire }
+const signatureOf = ({ type, settings }) => JSON.stringify([type, settings])
+
+/**
+ * The same for a line of a configuration, which may be listened to instead of polled: then one module or controller is at its other end.
+ * @param {{ baudRate: number, flowControl: string }} line
+ */
+const simulatedLine = line => {
+  const stations = simulatedWire(line)
+  /** @type {{ signature: string, wire: any, device: any, stop: () => void } | null} */
+  let peer = null
+  const deaf = () => {
+    peer?.stop()
+    peer = null
+  }
+  return {
+    ...stations,
+    wire: { ...stations.wire, connect: handlers => (peer ?? stations).wire.connect(handlers) },
+    /** @param {{ type: string, settings: any }} listener the first one of a kind says how its other end is set */
+    listen(listener) {
+      const signature = signatureOf(listener)
+      if (peer?.signature === signature) return
+      deaf()
+      peer = { signature, ...simulatedPeer(listener, line) }
+    },
+    deaf,
+    /** The simulated module or controller. */
+    peer: () => peer?.device ?? null
+  }
+}
+
+module.exports = { simulatedLine, simulatedWire }

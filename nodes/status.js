@@ -6,11 +6,13 @@
  * @typedef {object} State
  * @property {{ code?: string } | null} [fault] the configuration cannot be used
  * @property {{ state: string, reason?: { code: string } | null }} [line]
- * @property {'idle'|'writing'|'read'|'failed'|'written'} [phase]
+ * @property {'idle'|'writing'|'read'|'failed'|'written'|'listening'|'received'|'sending'|'sent'} [phase]
  * @property {number} [count] values of the last read
  * @property {number} [bad] how many of them are bad
  * @property {string} [code] of the last failure
  * @property {string} [outcome] of the last write
+ * @property {number} [received] messages since the start
+ * @property {boolean} [complete] whether the last one was
  */
 
 const MOST = 19
@@ -55,12 +57,21 @@ const CAUSES = {
   CONNECT_FAILED: 'down',
   PORT_ERROR: 'down',
   READ_ONLY: 'readOnly',
+  SENDING_OFF: 'sendingOff',
+  WRITE_STALLED: 'held',
   SUPERSEDED: 'superseded'
 }
 
 const OUTCOMES = {
   confirmed: { fill: 'green', shape: 'dot', key: 'written' },
   unknown: { fill: 'red', shape: 'ring', key: 'unknown' }
+}
+
+/** A message of free text is only sent; with the bidirectional protocol the other side confirms it. */
+const SENT = {
+  ...OUTCOMES,
+  sent: { fill: 'green', shape: 'dot', key: 'sent' },
+  confirmed: { fill: 'green', shape: 'dot', key: 'acknowledged' }
 }
 
 const show = (fill, shape, key, values = {}) => ({ fill, shape, key, values })
@@ -80,15 +91,31 @@ const readStatus = ({ count = 0, bad = 0, code }) => {
   return show('red', 'ring', causeOf(code, 'error'))
 }
 
-/** @param {State} state */
-const writeStatus = ({ outcome, code }) => {
+/** @param {State} state @param {Record<string, any>} [outcomes] */
+const writeStatus = ({ outcome, code }, outcomes = OUTCOMES) => {
   // nobody acknowledges a broadcast: that is how it works, not a fault
   if (code === 'BROADCAST_UNCONFIRMED') return show('yellow', 'ring', 'broadcast')
-  const known = OUTCOMES[outcome ?? '']
+  const known = outcomes[outcome ?? '']
   if (known) return show(known.fill, known.shape, known.key)
   return outcome === 'refused'
     ? show('yellow', 'ring', causeOf(code, 'notWritten'))
     : show('red', 'ring', causeOf(code, 'error'))
+}
+
+/** @param {State} state */
+const receivedStatus = ({ received, complete }) =>
+  complete ? show('green', 'dot', 'received', { count: received }) : show('yellow', 'ring', 'incomplete')
+
+/** @type {Record<string, (state: State) => { fill: string, shape: string, key: string, values: Record<string, any> }>} */
+const PHASES = {
+  writing: () => show('blue', 'ring', 'writing'),
+  read: readStatus,
+  failed: ({ code }) => show('red', 'ring', causeOf(code, 'error')),
+  written: state => writeStatus(state),
+  listening: () => show('grey', 'dot', 'listening'),
+  received: receivedStatus,
+  sending: () => show('blue', 'ring', 'sending'),
+  sent: state => writeStatus(state, SENT)
 }
 
 /**
@@ -98,11 +125,8 @@ const writeStatus = ({ outcome, code }) => {
 const statusOf = state => {
   if (state.fault) return show('red', 'ring', state.fault.code === 'READ_ONLY' ? 'readOnly' : 'config')
   if (state.line && state.line.state !== 'open') return lineStatus(state.line)
-  if (state.phase === 'writing') return show('blue', 'ring', 'writing')
-  if (state.phase === 'read') return readStatus(state)
-  if (state.phase === 'failed') return show('red', 'ring', causeOf(state.code, 'error'))
-  if (state.phase === 'written') return writeStatus(state)
-  return show('grey', 'ring', 'waiting')
+  const phase = PHASES[state.phase ?? '']
+  return phase ? phase(state) : show('grey', 'ring', 'waiting')
 }
 
 /**

@@ -19,6 +19,7 @@ var nxlineSerialPlc = (() => {
       var choice = (fallback, ...known) => ({ kind: "choice", fallback, known });
       var flag = (fallback = false) => ({ kind: "flag", fallback });
       var list = () => ({ kind: "list", fallback: [] });
+      var bytes = (fallback, most) => ({ kind: "bytes", fallback, most, blank: true, says: `0 to ${most} bytes in hex` });
       var node = () => ({ kind: "node", fallback: "", needed: true });
       var READING = {
         itemsType: choice("list", "list", "msg"),
@@ -38,6 +39,11 @@ var nxlineSerialPlc = (() => {
         coalesce: flag(),
         topic: choice("item", "item", "keep", "fixed"),
         topicText: text()
+      };
+      var SENDING = {
+        access: choice("read", "read", "write"),
+        onFailure: choice("error", "error", "output"),
+        acceptRetained: flag()
       };
       var PROPERTIES = {
         "plc-line": {
@@ -113,6 +119,45 @@ var nxlineSerialPlc = (() => {
           mode: choice("read", "read", "write", "both"),
           ...READING,
           ...WRITING
+        },
+        "melsec-c24": {
+          name: text(),
+          line: node(),
+          bidirectional: flag(),
+          framing: choice("end", "end", "count", "gap"),
+          end: bytes("0D 0A", 2),
+          count: number(0, 0, 16384),
+          gap: number(0, 0, 6e4),
+          format: choice("text", "text", "bytes", "words"),
+          encoding: choice("latin1", "latin1", "utf8", "ascii", "euc-kr", "shift_jis"),
+          unit: choice("word", "word", "byte"),
+          ...SENDING,
+          padEven: flag(),
+          quiet: number(0, 0, 6e4),
+          timer0: number(0, 0, 6e5),
+          tornEnd: flag(),
+          flow: choice("none", "none", "dc", "driver"),
+          transparent: bytes("", 11),
+          room: number(64, 1, 4095),
+          stallLimit: number(3e4, 100, 36e5),
+          asciiBinary: flag(),
+          first: bytes("", 80),
+          last: bytes("", 80),
+          most: number(16384, 1, 65536),
+          sumCheck: flag(true),
+          ackTimeout: number(1e3, 10, 6e5),
+          priority: choice("c24", "c24", "us")
+        },
+        "incon-link": {
+          name: text(),
+          line: node(),
+          encoding: choice("ascii", "ascii", "latin1", "utf8"),
+          checked: flag(),
+          most: number(256, 2, 4096),
+          silence: number(200, 0, 6e4),
+          ...SENDING,
+          quiet: number(50, 0, 6e4),
+          before: number(5, 0, 6e4)
         }
       };
       var VARIABLE = /^\$\{([^}]+)\}$/;
@@ -129,7 +174,14 @@ var nxlineSerialPlc = (() => {
         return given === false || given === "false" ? { value: false } : { problem: "flag" };
       };
       var readChoice = (row, given) => row.known.includes(String(given)) ? { value: String(given) } : { problem: "choice" };
+      var HEX = /^(?:[0-9a-f]{2})*$/i;
+      var readBytes = (row, given) => {
+        const digits = String(given).replace(/\s/g, "");
+        const known = HEX.test(digits) && digits.length <= row.most * 2;
+        return known ? { value: (digits.match(/../g) ?? []).join(" ").toUpperCase() } : { problem: "bytes" };
+      };
       var READERS = {
+        bytes: readBytes,
         number: readNumber,
         choice: readChoice,
         flag: (_row, given) => readFlag(given),
@@ -138,7 +190,8 @@ var nxlineSerialPlc = (() => {
         text: (_row, given) => ({ value: String(given).trim() })
       };
       var readProperty = (row, given) => {
-        const missing = given === void 0 || given === null || typeof given === "string" && given.trim() === "";
+        const empty = typeof given === "string" && given.trim() === "" && !row.blank;
+        const missing = given === void 0 || given === null || empty;
         if (missing)
           return row.needed && row.fallback === "" ? { problem: "missing", value: row.fallback } : { value: row.fallback };
         const variable = typeof given === "string" ? VARIABLE.exec(given.trim()) : null;
@@ -146,12 +199,18 @@ var nxlineSerialPlc = (() => {
         return READERS[row.kind](row, given);
       };
       var allowed = (row) => {
-        if (row.kind === "number") return row.says ?? `${row.least} to ${row.most}`;
+        if (row.says) return row.says;
+        if (row.kind === "number") return `${row.least} to ${row.most}`;
         return row.known ? row.known.join(", ") : row.kind;
       };
       var TRANSPORTS = { path: "serial", host: "tcp", port: "tcp" };
       var unused = (mode, name) => mode === "read" && name in WRITING || mode === "write" && name in READING;
+      var UNIDIRECTIONAL = ["framing", "end", "count", "first", "last", "timer0", "tornEnd"];
+      var FRAMINGS = { end: "end", count: "count" };
+      var isOn = (value) => value === true || value === "true";
+      var unusedByC24 = (name, { framing = "end", bidirectional = false }) => isOn(bidirectional) ? UNIDIRECTIONAL.includes(name) : Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing;
       var applies = (type, name, config) => {
+        if (type === "melsec-c24") return !unusedByC24(name, config);
         if (type === "plc-line") return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || "serial");
         return type !== "chino-regulator" || !unused(config.mode || "read", name);
       };
@@ -159,119 +218,42 @@ var nxlineSerialPlc = (() => {
     }
   });
 
-  // scripts/editor/texts.js
-  var require_texts = __commonJS({
-    "scripts/editor/texts.js"(exports, module) {
+  // nodes/listening-rules.js
+  var require_listening_rules = __commonJS({
+    "nodes/listening-rules.js"(exports, module) {
       "use strict";
-      var SHARED = "@nxline/node-red-serial-plc/plc-line:";
-      var t = (key, values) => RED._(`${SHARED}${key}`, values);
-      var translate = (key, values, text) => {
-        const translated = RED._(`${SHARED}${key}`, { ...values, defaultValue: text });
-        return /__\w+__/.test(translated) ? text : translated;
+      var { PROPERTIES, readProperty } = require_properties();
+      var LISTENERS = {
+        "melsec-c24": {
+          title: "MELSEC C24",
+          shared: [
+            ...[
+              "bidirectional",
+              "framing",
+              "end",
+              "count",
+              "gap",
+              "most",
+              "first",
+              "last",
+              "asciiBinary",
+              "unit",
+              "sumCheck"
+            ],
+            ...["flow", "transparent", "room", "stallLimit", "timer0", "tornEnd", "priority"]
+          ]
+        },
+        "incon-link": { title: "INCON", shared: ["most", "silence", "checked", "encoding"] }
       };
-      var errorText = (error) => {
-        const text = String(error.message || error);
-        const { code, details } = error;
-        if (!code || !details) return text;
-        const { why, notation, reason } = details;
-        const values = why ? { ...details, reason: translate(`why.${why}`, details, reason) } : details;
-        const general = translate(`error.${code}`, values, text);
-        return notation ? translate(`error.${code}_${notation.toUpperCase()}`, values, general) : general;
+      var shown = (value) => value === "" ? "none" : value;
+      var valueOf = ({ type, settings }, name) => readProperty(PROPERTIES[type][name], settings[name]).value;
+      var portConflict = (one, other) => {
+        if (one.type !== other.type)
+          return `the one is ${LISTENERS[one.type].title}, the other ${LISTENERS[other.type].title}`;
+        const name = LISTENERS[one.type].shared.find((each) => valueOf(one, each) !== valueOf(other, each));
+        return name ? `${name} is ${shown(valueOf(one, name))} and ${shown(valueOf(other, name))}` : "";
       };
-      var causeText = ({ code, text, remedy, details }) => translate(`cause.${code}`, details || {}, `${capital(text)}. ${remedy}`);
-      var capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
-      var reasonOf = (error) => errorText(error.cause && error.cause.code ? error.cause : error);
-      module.exports = { t, capital, causeText, errorText, reasonOf };
-    }
-  });
-
-  // scripts/editor/widgets.js
-  var require_widgets = __commonJS({
-    "scripts/editor/widgets.js"(exports, module) {
-      "use strict";
-      var { t } = require_texts();
-      var tabs = (id, pages) => {
-        const widget = RED.tabs.create({
-          id,
-          onchange(tab) {
-            $(`#${id}-content`).children().hide();
-            $(`#${tab.id}`).show();
-            $(`#${tab.id}`).trigger("nxline-shown");
-          }
-        });
-        pages.forEach(([page, label]) => widget.addTab({ id: page, label }));
-        return widget;
-      };
-      var keepUnknown = (field, value) => {
-        if (value === void 0 || value === null || value === "") return;
-        const known = field.find("option").filter((_, option) => option.value === String(value)).length > 0;
-        if (!known) field.append($("<option>").attr("value", value).text(value));
-        field.val(String(value));
-      };
-      var fillDefaults = (node, prefix) => {
-        for (const [name, { value }] of Object.entries(node._def.defaults)) {
-          const field = $(`#${prefix}${name}`);
-          if (field.length === 0) continue;
-          if (node[name] === void 0 && value !== "" && !Array.isArray(value)) {
-            if (field.is(":checkbox")) field.prop("checked", value);
-            else field.val(String(value));
-          }
-          if (field.is("select") && !field.prop("multiple") && !name.match(/^(line|plc|regulator)$/)) {
-            keepUnknown(field, node[name] === void 0 ? value : node[name]);
-          }
-        }
-      };
-      var offerRow = ({ value, hint = "", first = "" }) => ({
-        value,
-        label: $("<span>").text(first || value).append(
-          $("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(first ? value : hint)
-        )
-      });
-      var offersFor = (text, offers, usable) => {
-        const wanted = text.trim().toLowerCase();
-        const found = offers.filter((offer) => `${offer.value} ${offer.hint || ""} ${offer.first || ""}`.toLowerCase().includes(wanted)).slice(0, 50);
-        if (wanted === "" || found.length === 0 || !usable(text.trim())) return found;
-        const others = found.filter(({ value }) => value !== text.trim());
-        return others.length === 0 ? [] : [{ value: text.trim() }, ...others];
-      };
-      var suggest = (field, offers, usable) => {
-        field.on("keydown", ({ key }) => {
-          const before = field.val();
-          if (key === "Tab" || key === "Enter") setTimeout(() => field.val() !== before && field.trigger("change"), 0);
-        });
-        field.autoComplete({
-          minLength: 0,
-          search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
-        });
-        field.on("click", () => field.val() === "" && field.trigger("keyup"));
-      };
-      var copyable = (text) => $('<a href="#" class="nxline-copy">').css({ fontFamily: "var(--red-ui-monospace-font)", whiteSpace: "nowrap" }).attr("title", t("editor.copy")).text(text).prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>').on("click", function(event) {
-        event.preventDefault();
-        RED.clipboard.copyText(text, $(this));
-      });
-      var note = () => $('<div class="nxline-note">').css({
-        fontSize: "12px",
-        lineHeight: "16px",
-        minHeight: "16px",
-        color: "var(--red-ui-secondary-text-color)"
-      });
-      var say = (block, text, bad = false) => block.empty().text(text).css("color", bad ? "var(--red-ui-text-color-error)" : "var(--red-ui-secondary-text-color)");
-      var cell = (name, value, { width = "80px", grow = false, shows = t(`column.${name}`), hint = t(`tooltip.${name}`) } = {}) => $('<input type="text">').addClass(`nxline-${name}`).attr({ placeholder: shows, title: hint, "aria-label": t(`column.${name}`) }).css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 }).val(value === void 0 || value === null ? "" : String(value));
-      var pick = (name, value, options) => {
-        const field = $("<select>").addClass(`nxline-${name}`).attr({ title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width: "auto", margin: 0 });
-        options.forEach(([key, label]) => field.append($("<option>").attr("value", key).text(label)));
-        keepUnknown(field, value);
-        return field;
-      };
-      var truthy = (value) => Boolean(value) && value !== "false";
-      var tick = (name, value) => {
-        const box = $('<input type="checkbox">').addClass(`nxline-${name}`).css({ width: "auto", margin: "0 4px 0 0" }).prop("checked", truthy(value));
-        const label = $("<label>").css({ width: "auto", margin: 0, display: "inline-flex", alignItems: "center", whiteSpace: "nowrap" }).attr("title", t(`tooltip.${name}`)).append(box).append(document.createTextNode(t(`column.${name}`)));
-        return { box, label };
-      };
-      var mark = (text) => $("<span>").css({ color: "var(--red-ui-secondary-text-color)", whiteSpace: "nowrap", fontSize: "12px" }).text(text);
-      var flex = (...children) => $("<div>").css({ display: "flex", gap: "4px", alignItems: "center", marginBottom: "3px" }).append(children);
-      module.exports = { tabs, fillDefaults, suggest, offersFor, copyable, note, say, cell, pick, tick, truthy, flex, mark };
+      module.exports = { LISTENERS, portConflict };
     }
   });
 
@@ -331,12 +313,25 @@ var nxlineSerialPlc = (() => {
           "a retained MQTT message was not written to {item}",
           "Publish set values without retain, or accept retained messages in the node."
         ],
+        SENDING_OFF: ["{node} sent nothing: it only receives", 'Set Access to "receive and send" in the node.'],
         FUNCTION_REFUSED: [
           "the function {function} is never sent",
           "Only the functions that read and write bits and words are used."
         ],
         FRAME_TOO_LONG: ["{what} does not fit into one frame: {got} of at most {most} bytes", "Split it."],
         TOO_MANY: ["{count} {unit} at once are too many: at most {most}", "Split the message."],
+        END_CODE_INSIDE: [
+          "the message was not sent: it contains {code} at byte {at}; {reason}",
+          "Change the message, choose another end code, or use ASCII-binary conversion on both sides."
+        ],
+        FLOW_CODE_INSIDE: [
+          "the message was not sent: its byte {at} is {code}, which the flow control takes out",
+          "Set a transparent code on both sides, or use ASCII-binary conversion or flow control by wire."
+        ],
+        ODD_COUNT: [
+          "the message was not sent: {count} bytes are an odd count; {reason}",
+          'Switch "pad to even" on, send an even count, or use byte units on both sides.'
+        ],
         // --- the station's own word
         PLC_WRONG_FUNCTION: [
           "station {station} answers error 1: wrong function code",
@@ -402,6 +397,10 @@ var nxlineSerialPlc = (() => {
         MODBUS_EXCEPTION: [
           "station {station} answers exception {exception}, which the protocol does not name",
           "Look it up in the manual of the device."
+        ],
+        C24_NAK: [
+          "{station} did not take the message: NAK {nak}, {reason}",
+          "Look the code up in the manual of the module; send it again when the cause is gone."
         ],
         // --- the conversation
         TIMEOUT: [
@@ -474,6 +473,10 @@ var nxlineSerialPlc = (() => {
           "{owner} and {other} use {path} with different settings: {reason}",
           "Use one line configuration, or the same settings."
         ],
+        LINE_USE: [
+          "{owner} and {other} cannot share {line}: {reason}",
+          "Give one of them a line of its own: a line asks stations, or listens to messages in one way."
+        ],
         SUPERSEDED: [
           "{item} was not written: a newer value came while this one waited",
           'Nothing to do; switch "only the latest" off in the node to write every value.'
@@ -528,140 +531,9 @@ var nxlineSerialPlc = (() => {
           this.remedy = fill(row[1], rest);
         }
       };
-      var REFUSAL = /^(PLC|MODBUS)_/;
+      var REFUSAL = /^(PLC|MODBUS|C24)_/;
       var isRefusal = (error) => typeof error?.code === "string" && REFUSAL.test(error.code);
       module.exports = { CODES, PlcError, isRefusal };
-    }
-  });
-
-  // lib/device/options.js
-  var require_options = __commonJS({
-    "lib/device/options.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var blank = (value) => value === void 0 || value === null || typeof value === "string" && value.trim() === "";
-      var wholeNumber = (setting, value, { fallback, least, most }) => {
-        if (blank(value)) return fallback;
-        const number = typeof value === "string" ? Number(value) : value;
-        if (Number.isInteger(number) && number >= least && number <= most) return number;
-        throw new PlcError("BAD_SETTING", { setting, value, reason: `a whole number from ${least} to ${most} is needed` });
-      };
-      var choice = (setting, value, known) => {
-        if (blank(value)) return known[0];
-        const found = known.find((each) => String(each) === String(value).trim());
-        if (found !== void 0) return found;
-        throw new PlcError("BAD_SETTING", { setting, value, reason: `known are ${known.join(", ")}` });
-      };
-      var nameOf = (value, station) => blank(value) ? `station ${station}` : String(value).trim();
-      var readRanges = (value, notation) => {
-        const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(",");
-        return given.map((text) => String(text).trim()).filter((text) => text !== "").map((text) => {
-          const { kind, address, count } = notation.parse(text);
-          const size = kind === "word" ? 16 : 1;
-          return { start: address * size, end: (address + count) * size };
-        });
-      };
-      var isOn = (value) => value === true || value === "true";
-      module.exports = { blank, choice, isOn, nameOf, readRanges, wholeNumber };
-    }
-  });
-
-  // lib/device/mixed.js
-  var require_mixed = __commonJS({
-    "lib/device/mixed.js"(exports, module) {
-      "use strict";
-      var ONLY_PLC = 255;
-      var conflict = (nx, modbus) => {
-        const { station } = modbus;
-        if (nx.station === ONLY_PLC) return `NX station ${ONLY_PLC} answers to every number`;
-        if (nx.station === 0) return "NX station 0 is the broadcast of MODBUS";
-        if (station === 0) return "a MODBUS broadcast reaches the NX PLCs too";
-        if (nx.station === station) return `both are station ${station}`;
-        if ((nx.masterIds ?? []).includes(station)) {
-          return `the NX configuration sends as master ID ${station}, which is the number of the regulator`;
-        }
-        return "";
-      };
-      var mixedConflict = (one, other) => {
-        if (one.protocol === other.protocol) return "";
-        return one.protocol === "nx" ? conflict(one, other) : conflict(other, one);
-      };
-      module.exports = { mixedConflict };
-    }
-  });
-
-  // lib/codec/nx/ids.js
-  var require_ids = __commonJS({
-    "lib/codec/nx/ids.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var LEAST_FREE = 192;
-      var LAST = 254;
-      var DEFAULT_IDS = Object.freeze([226, 227, 228, 229, 230, 231, 232, 233]);
-      function masterIdList(value, { stations = [] } = {}) {
-        if (value === void 0 || value === null || value === "") return DEFAULT_IDS;
-        const given = Array.isArray(value) ? value : typeof value === "string" ? value.split(",").flatMap(expand) : [value];
-        if (given.length < 1 || given.length > LAST + 1) throw bad(value, "give 1 to 63 numbers");
-        const ids = [...new Set(given)];
-        for (const id of ids) checkId(id, stations);
-        return Object.freeze(ids);
-      }
-      function checkId(id, stations) {
-        if (!Number.isInteger(id) || id < 0 || id > LAST) throw bad(id, "it must be a whole number from 0 to 254");
-        if (id >= LEAST_FREE) return;
-        if (stations.includes(id)) throw bad(id, "a station of this line has this number");
-        if (stations.includes(255)) throw bad(id, "with station 255 the number of the PLC is not known");
-      }
-      function expand(text) {
-        const ends = text.split("..").map((part) => {
-          const clean = part.trim().replace(/^\$/, "0x");
-          if (!/^(0x[0-9a-f]{1,2}|\d{1,3})$/i.test(clean)) throw bad(text.trim(), "it is not a number");
-          return Number(clean);
-        });
-        const [first, last = first] = ends;
-        if (ends.length > 2 || last < first || last > 255) throw bad(text.trim(), "it is not a range");
-        return Array.from({ length: last - first + 1 }, (_, i) => first + i);
-      }
-      var bad = (id, reason) => new PlcError("BAD_MASTER_ID", { id: String(id), reason });
-      function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
-        if (!Array.isArray(memory.resting)) memory.resting = [];
-        const resting = memory.resting;
-        const first = Math.abs(Math.trunc(start)) % ids.length || 0;
-        const following = () => {
-          const remembered = ids.indexOf(memory.last ?? -1);
-          return remembered >= 0 ? (remembered + 1) % ids.length : first;
-        };
-        const free = (id) => {
-          const at = id === void 0 ? -1 : resting.indexOf(id);
-          if (id === void 0) resting.length = 0;
-          else if (at >= 0) resting.splice(at, 1);
-        };
-        return {
-          /** @returns {number} the ID of the next query */
-          take() {
-            let next = following();
-            let tries = ids.length;
-            while (tries-- > 0 && resting.includes(ids[next])) next = (next + 1) % ids.length;
-            const oldest = resting.find((id2) => ids.includes(id2));
-            const id = tries < 0 && oldest !== void 0 ? oldest : ids[next];
-            memory.last = id;
-            return id;
-          },
-          /** The exchange of this ID ended with an answer. @param {number} id */
-          ok: (id) => free(id),
-          /** It did not: an answer may still come. @param {number} id */
-          failed(id) {
-            free(id);
-            if (ids.length > 1) resting.push(id);
-          },
-          /** No answer can come any more: to this ID, or to any. @param {number} [id] */
-          free,
-          /** @returns {number[]} IDs to which an answer may still come */
-          resting: () => [...resting],
-          ids
-        };
-      }
-      module.exports = { DEFAULT_IDS, masterIdList, masterIds };
     }
   });
 
@@ -738,462 +610,219 @@ var nxlineSerialPlc = (() => {
     }
   });
 
-  // lib/codec/crc16.js
-  var require_crc16 = __commonJS({
-    "lib/codec/crc16.js"(exports, module) {
-      "use strict";
-      var POLYNOMIAL = 40961;
-      var START = 65535;
-      var TABLE = Uint16Array.from({ length: 256 }, (_, byte) => {
-        let crc = byte;
-        for (let bit = 0; bit < 8; bit++) crc = crc & 1 ? crc >>> 1 ^ POLYNOMIAL : crc >>> 1;
-        return crc;
-      });
-      function crc16(bytes, start = 0, end = bytes.length) {
-        let crc = START;
-        for (let i = start; i < end; i++) crc = crc >>> 8 ^ TABLE[(crc ^ bytes[i]) & 255];
-        return crc;
-      }
-      module.exports = { crc16 };
-    }
-  });
-
-  // lib/codec/nx/frame.js
-  var require_frame = __commonJS({
-    "lib/codec/nx/frame.js"(exports, module) {
+  // lib/codec/modbus/functions.js
+  var require_functions2 = __commonJS({
+    "lib/codec/modbus/functions.js"(exports, module) {
       "use strict";
       var { PlcError } = require_error();
-      var { crc16 } = require_crc16();
-      var HEADER = 4;
-      var OVERHEAD = 6;
-      var MOST_INFO = 256;
-      var SHORTEST = OVERHEAD + 1;
-      var LONGEST = OVERHEAD + MOST_INFO;
-      function encodeFrame({ to, from, fn, info }) {
-        byte("to", to);
-        byte("from", from);
-        byte("fn", fn);
-        const length = info.length;
-        if (!(length >= 1))
-          throw new PlcError("BAD_SETTING", { setting: "info", value: "empty", reason: "LEN 0 means 256 bytes" });
-        if (length > MOST_INFO) throw new PlcError("FRAME_TOO_LONG", { what: "INFO", got: length, most: MOST_INFO });
-        const bytes = Buffer.allocUnsafe(length + OVERHEAD);
-        bytes[0] = to;
-        bytes[1] = from;
-        bytes[2] = fn;
-        bytes[3] = length & 255;
-        bytes.set(info, HEADER);
-        bytes.writeUInt16LE(crc16(bytes, 0, length + HEADER), length + HEADER);
-        return bytes;
-      }
-      function byte(setting, value) {
-        if (!Number.isInteger(value) || value < 0 || value > 255) {
-          throw new PlcError("BAD_SETTING", { setting, value, reason: "it must be a byte, 0 to 255" });
-        }
-      }
-      function frameLength(bytes, start = 0) {
-        return bytes.length - start < HEADER ? 0 : (bytes[start + 3] || MOST_INFO) + OVERHEAD;
-      }
-      function crcFits(bytes, start, length) {
-        const end = start + length - 2;
-        return crc16(bytes, start, end) === (bytes[end] | bytes[end + 1] << 8);
-      }
-      function decodeFrame(bytes, start = 0) {
-        const length = frameLength(bytes, start);
-        return length > 0 && bytes.length - start >= length && crcFits(bytes, start, length) ? openFrame(bytes, start) : null;
-      }
-      function openFrame(bytes, start = 0) {
-        const length = frameLength(bytes, start);
-        const info = Buffer.from(bytes.buffer, bytes.byteOffset + start + HEADER, length - OVERHEAD);
-        return { to: bytes[start], from: bytes[start + 1], fn: bytes[start + 2], info, length };
-      }
-      module.exports = {
-        SHORTEST,
-        LONGEST,
-        MOST_INFO,
-        HEADER,
-        OVERHEAD,
-        encodeFrame,
-        frameLength,
-        crcFits,
-        decodeFrame,
-        openFrame
-      };
-    }
-  });
-
-  // lib/codec/nx/limits.js
-  var require_limits = __commonJS({
-    "lib/codec/nx/limits.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var { functionOf } = require_functions();
-      var { MOST_INFO } = require_frame();
-      var LIMITS = Object.freeze({
-        readBits: 255,
-        writeBits: 254,
-        readWords: 128,
-        writeWords: 64,
-        readMixed: 128,
-        writeMixed: 85,
-        info: MOST_INFO
-      });
-      var LAST_MIXED = 16383;
-      var LAST = 65535;
-      function limitsOf(settings = {}) {
-        const limits = { ...LIMITS };
-        for (const [name, given] of Object.entries(settings)) {
-          if (given === void 0) continue;
-          if (!Object.hasOwn(LIMITS, name)) {
-            throw new PlcError("BAD_SETTING", { setting: `limits.${name}`, value: given, reason: "there is no such limit" });
-          }
-          const least = name === "info" ? 3 : 1;
-          const most = name === "info" ? MOST_INFO : functionOf(name).most;
-          const value = typeof given === "string" && /^\s*\d{1,3}\s*$/.test(given) ? Number(given) : given;
-          if (!Number.isInteger(value) || value < least || value > most) {
-            throw new PlcError("BAD_SETTING", {
-              setting: `limits.${name}`,
-              value: given,
-              reason: `it must be ${least} to ${most}`
-            });
-          }
-          limits[name] = value;
-        }
-        return Object.freeze(limits);
-      }
-      function check(query, limits = LIMITS) {
-        const row = functionOf(query?.ask);
-        CHECKS[row.name](query, row, limits);
-        return row;
-      }
-      var CHECKS = {
-        readBits: checkBlock,
-        readWords: checkBlock,
-        writeBits: (query, row, limits) => checkBlockWrite("bit", query, { row, limits }),
-        writeWords: (query, row, limits) => checkBlockWrite("word", query, { row, limits }),
-        readMixed({ addresses }, row, limits) {
-          const list = listOf(addresses, row, limits);
-          list.forEach(checkPlace);
-          const bytes = list.reduce((sum, { kind }) => sum + (kind === "bit" ? 1 : 2), 0);
-          checkBytes(Math.max(bytes, list.length * 2), limits);
-        },
-        writeMixed({ writes }, row, limits) {
-          const list = listOf(writes, row, limits);
-          list.forEach(checkPlace);
-          list.forEach(({ kind, address, value }) => checkValue(kind, address, value));
-          const bytes = list.reduce((sum, { kind }) => sum + (kind === "bit" ? 3 : 4), 0);
-          checkBytes(bytes, limits);
-        }
-      };
-      function checkBlockWrite(kind, { base, values }, { row, limits }) {
-        const list = listOf(values, row, limits);
-        checkBlock({ base, count: list.length }, row, limits);
-        list.forEach((value, i) => checkValue(kind, base + i, value));
-      }
-      function checkBlock({ base, count }, row, limits) {
-        checkCount(count, row, limits);
-        const kind = row.unit === "bits" ? "bit" : "word";
-        if (!whole(base, LAST)) throw badAddress(base, `the last ${kind} address is ${LAST}`);
-        if (base + count - 1 > LAST)
-          throw badAddress(base, `${count} ${row.unit} from there end after the last address ${LAST}`);
-        const size = kind === "bit" ? count : count * 2;
-        checkBytes(row.repeatable ? Math.max(size, 3) : size + 2, limits);
-      }
-      function checkCount(count, row, limits) {
-        const most = limits[row.name];
-        if (whole(count, most) && count >= 1) return;
-        const reason = count === 0 ? "there is nothing to ask for" : whole(count, Infinity) ? "too many for one frame" : "no count";
-        throw new PlcError("BAD_COUNT", { count, unit: row.unit, reason, least: 1, most });
-      }
-      function checkBytes(got, limits) {
-        if (got > limits.info)
-          throw new PlcError("FRAME_TOO_LONG", { what: "the query or its answer", got, most: limits.info });
-      }
-      function checkPlace(place) {
-        const kind = place?.kind;
-        if (kind !== "bit" && kind !== "word") throw badAddress(place?.address, "it must be a bit or a word");
-        if (!whole(place.address, LAST_MIXED))
-          throw badAddress(place.address, `in mixed frames the last ${kind} address is ${LAST_MIXED}`);
-      }
-      function checkValue(kind, address, value) {
-        if (kind === "bit" ? typeof value === "boolean" : whole(value, 65535)) return;
-        const reason = kind === "bit" ? "a bit is true or false" : "a word is a whole number from 0 to 65535";
-        throw new PlcError("BAD_VALUE", { item: `${kind} ${hex(address)}`, value: String(value), reason });
-      }
-      function listOf(list, row, limits) {
-        if (Array.isArray(list)) {
-          checkCount(list.length, row, limits);
-          return Array.from(list);
-        }
-        const reason = "they are not given as a list";
-        throw new PlcError("BAD_COUNT", { count: "no", unit: row.unit, reason, least: 1, most: limits[row.name] });
-      }
-      var whole = (value, most) => Number.isInteger(value) && value >= 0 && value <= most;
-      var hex = (value) => `${value.toString(16).toUpperCase().padStart(4, "0")}h`;
-      var badAddress = (address, reason) => new PlcError("BAD_ADDRESS", { address: String(address), reason });
-      module.exports = { LIMITS, limitsOf, check };
-    }
-  });
-
-  // lib/codec/nx/areas.js
-  var require_areas = __commonJS({
-    "lib/codec/nx/areas.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var LAST_WORD = 65535;
-      var LAST_BIT = 65535;
-      var MOST_ROWS = 64;
-      var AREAS = table([
-        // area  base   words as       certainty      writable note
-        ["R", 0, 128, "both", "likely", true, "external I/O"],
-        ["L", 128, 64, "both", "likely", true, "link"],
-        ["M", 192, 128, "both", "certain", true, "internal relay"],
-        ["K", 320, 128, "both", "certain", true, "keep (retentive)"],
-        ["F", 448, 16, "both", "unconfirmed", false, "special flags"],
-        ["TC", 464, 16, "bits", "unconfirmed", false, "timer and counter contacts"],
-        ["W", 512, 2048, "words", "unconfirmed", false, "data"],
-        ["SV", 2560, 256, "words", "unconfirmed", false, "set values"],
-        ["PV", 2816, 256, "words", "unconfirmed", false, "present values"],
-        ["SR", 3072, 512, "words", "unconfirmed", false, "special registers"]
+      var FUNCTIONS = table([
+        // fn  table  unit    request      most  answer  reads
+        [1, "co", "bits", "block", 2e3, "bits", true],
+        [2, "di", "bits", "block", 2e3, "bits", true],
+        [3, "hr", "words", "block", 125, "words", true],
+        [4, "ir", "words", "block", 125, "words", true],
+        [5, "co", "bits", "single", 1, "echo", false],
+        [6, "hr", "words", "single", 1, "echo", false],
+        [15, "co", "bits", "multiple", 1968, "echo", false],
+        [16, "hr", "words", "multiple", 123, "echo", false]
       ]);
       function table(rows) {
         return Object.freeze(
           rows.map(
-            ([area, base, words, as, certainty, writable, note]) => Object.freeze({ area, base, words, as, certainty, writable, note })
+            ([fn, name, unit, request, most, answer, reads]) => Object.freeze({ fn, table: name, unit, request, most, answer, reads })
           )
         );
       }
-      var ACCESS = ["both", "bits", "words"];
-      var PROPERTIES = ["area", "base", "words", "as", "confirmed", "writable", "remove", "note"];
-      var hex = (value) => `$${value.toString(16).toUpperCase().padStart(4, "0")}`;
-      var span = (row) => `${row.area} (${hex(row.base)}..${hex(row.base + row.words - 1)})`;
-      function areaMap(rows = []) {
-        if (!Array.isArray(rows)) throw bad("table", "it is not a list of rows");
-        if (rows.length > MOST_ROWS) throw bad("table", `${rows.length} rows, at most ${MOST_ROWS}`);
-        const byName = new Map(AREAS.map((row) => [row.area, row]));
-        const seen = /* @__PURE__ */ new Set();
-        for (const given of rows) {
-          const name = nameOf(given);
-          if (seen.has(name)) throw bad(name, "two rows have this name");
-          seen.add(name);
-          const row = merge(name, given, byName.get(name));
-          if (row) byName.set(name, row);
-          else byName.delete(name);
-        }
-        const list = Object.freeze([...byName.values()].sort((a, b) => a.base - b.base));
-        for (let i = 1; i < list.length; i++) {
-          if (list[i - 1].base + list[i - 1].words > list[i].base) {
-            throw bad(list[i].area, `${span(list[i])} overlaps ${span(list[i - 1])}`);
-          }
-        }
-        return Object.freeze({
-          list,
-          get: (name) => byName.get(name),
-          at: (word) => list.find((row) => word >= row.base && word < row.base + row.words)
-        });
+      var EXCEPTION = 128;
+      var byNumber = new Map(FUNCTIONS.map((row) => [row.fn, row]));
+      var find = (name, request) => (
+        /** @type {FunctionRow} */
+        FUNCTIONS.find((row) => row.table === name && row.request === request) ?? null
+      );
+      function functionOf(fn) {
+        const row = byNumber.get(
+          /** @type {number} */
+          fn
+        );
+        if (!row) throw new PlcError("FUNCTION_REFUSED", { function: String(fn) });
+        return row;
       }
-      function nameOf(given) {
-        if (given === null || typeof given !== "object" || Array.isArray(given)) throw bad("?", "a row must be an object");
-        const name = own(given, "area");
-        if (typeof name !== "string" || !/^[A-Za-z]{1,4}$/.test(name))
-          throw bad(name, "the name must be 1 to 4 letters A to Z");
-        const unknown = Object.keys(given).find((key) => !PROPERTIES.includes(key));
-        if (unknown !== void 0) throw bad(name, `it has the unknown property ${unknown}`);
-        return name.toUpperCase();
-      }
-      function merge(name, given, old) {
-        if (flag(name, given, "remove")) {
-          if (!old) throw bad(name, "there is no such area to remove");
-          return null;
-        }
-        const base = number(name, given, "base", old);
-        const words = number(name, given, "words", old);
-        const as = own(given, "as") ?? old?.as ?? "both";
-        if (!ACCESS.includes(as)) throw bad(name, '"as" must be both, bits or words');
-        if (words < 1) throw bad(name, "it must have at least one word");
-        const last = base + words - 1;
-        if (last > LAST_WORD) throw bad(name, `it ends at ${hex(last)}, after the last word ${hex(LAST_WORD)}`);
-        if (as === "bits" && last * 16 + 15 > LAST_BIT)
-          throw bad(name, `its bits end after ${hex(LAST_BIT)}: use "as": "words"`);
-        return Object.freeze({ area: name, base, words, as, ...trust(name, given, { base, words, as, old }) });
-      }
-      function trust(name, given, { base, words, as, old }) {
-        const confirmed = flag(name, given, "confirmed");
-        const writable = flag(name, given, "writable");
-        const note = own(given, "note") ?? old?.note ?? "";
-        if (typeof note !== "string") throw bad(name, "the note must be text");
-        const same = old && old.base === base && old.words === words && old.as === as;
-        const known = same ? old : { certainty: "unconfirmed", writable: false };
-        const sure = confirmed ? { certainty: "certain", writable: true } : known;
-        if (writable && !sure.writable) throw bad(name, "it can be writable only if it is confirmed");
-        return { certainty: sure.certainty, writable: sure.writable && writable !== false, note: note.slice(0, 100) };
-      }
-      var own = (row, key) => Object.hasOwn(row, key) ? row[key] : void 0;
-      function flag(name, row, key) {
-        const value = own(row, key);
-        if (value !== void 0 && typeof value !== "boolean") throw bad(name, `"${key}" must be true or false`);
-        return value;
-      }
-      function number(name, row, key, old) {
-        const given = own(row, key);
-        if ((given === void 0 || given === "") && old) return old[key];
-        const text = typeof given === "string" ? given.trim().replace(/^\$/, "0x") : given;
-        const value = typeof text === "string" && /^(0x[0-9a-f]{1,5}|\d{1,6})$/i.test(text) ? Number(text) : text;
-        if (!Number.isInteger(value) || value < 0 || value > LAST_WORD + 1) {
-          throw bad(name, `"${key}" must be a whole number from 0 to ${LAST_WORD}, or hex as in 0x1C0`);
-        }
-        return value;
-      }
-      var bad = (name, reason) => new PlcError("BAD_AREA", { name, reason });
-      module.exports = { AREAS, LAST_BIT, LAST_WORD, areaMap };
+      var functionByNumber = (fn) => byNumber.get(fn);
+      var readFunction = (name) => find(name, "block").fn;
+      var writeFunction = (name, { single }) => find(name, single ? "single" : "multiple")?.fn ?? null;
+      module.exports = { EXCEPTION, FUNCTIONS, functionByNumber, functionOf, readFunction, writeFunction };
     }
   });
 
-  // lib/codec/nx/address.js
+  // lib/codec/modbus/address.js
   var require_address = __commonJS({
-    "lib/codec/nx/address.js"(exports, module) {
+    "lib/codec/modbus/address.js"(exports, module) {
       "use strict";
       var { PlcError } = require_error();
-      var { areaMap, LAST_BIT, LAST_WORD } = require_areas();
-      var { functionOf, queryCode } = require_functions();
+      var { readFunction, writeFunction } = require_functions2();
+      var SIZE = 65536;
       var MOST_CHARACTERS = 64;
       var MOST_RANGE = 4096;
-      var STANDARD = areaMap();
-      var NOTATION = /^([A-Z]{1,4})(\d{1,8})(?:\.(\d{1,8}))?$/;
-      var RAW = /^@(BIT:)?(0X[0-9A-F]{1,8}|\d{1,8})(?:\.(\d{1,8}))?$/;
-      var hex = (value) => value.toString(16).toUpperCase().padStart(4, "0");
-      function parseAddress(text, areas = STANDARD) {
-        if (typeof text !== "string") throw new PlcError("BAD_ADDRESS", { address: text, reason: "it is not text" });
+      var TABLES = Object.freeze(
+        /** @type {[TableName, string, 'bit'|'word', string, number, boolean][]} */
+        [
+          ["co", "coil", "bit", "0", 2097152, true],
+          ["di", "discrete input", "bit", "1", 2162688, false],
+          ["ir", "input register", "word", "3", 65536, false],
+          ["hr", "holding register", "word", "4", 0, true]
+        ].map(
+          ([table, name, kind, digit, base, writable]) => Object.freeze({ table, name, kind, digit, base, writable, size: SIZE })
+        )
+      );
+      var byDigit = new Map(TABLES.map((row) => [row.digit, row]));
+      var byName = new Map(TABLES.map((row) => [row.table, row]));
+      var PANEL = /^(\d+)(?:\.(\d*))?$/;
+      var EXPLICIT = /^(co|di|ir|hr)(\d+)(?:\.(\d*))?$/;
+      var rowOf = (table) => (
+        /** @type {any} */
+        byName.get(
+          /** @type {TableName} */
+          table
+        )
+      );
+      function parseAddress(text, { addressMode = "1-base" } = {}) {
+        if (typeof text === "number") throw bad(text, 'a number loses its zeros; write the address in quotes, as in "010197"');
+        if (typeof text !== "string") throw bad("", "it is not text");
         const clean = text.trim();
-        if (clean === "") throw bad(text, "it is empty");
+        if (clean === "") throw bad(text, "it is empty", { why: "empty" });
         if (clean.length > MOST_CHARACTERS)
-          throw bad(clean.slice(0, 20) + "…", `it has more than ${MOST_CHARACTERS} characters`);
+          throw bad(`${clean.slice(0, 20)}…`, `it has more than ${MOST_CHARACTERS} characters`);
         const [first, last, more] = clean.split(/\s*\.\.\s*/);
         if (more !== void 0) throw bad(clean, "a range has two ends");
-        const from = parseOne(first, clean, areas);
-        if (last === void 0) return finish(from, 1, areas);
-        return range(from, parseOne(last, clean, areas), { clean, areas });
+        const from = parseOne(first, clean, addressMode);
+        if (last === void 0) return finish(from, 1, addressMode);
+        return range(from, parseOne(last, clean, addressMode), { clean, addressMode });
       }
-      function range(from, to, { clean, areas }) {
-        if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a word");
-        if (from.raw !== to.raw || !from.raw && from.row !== to.row) throw bad(clean, "both ends must lie in one area");
+      function range(from, to, { clean, addressMode }) {
+        if (from.row !== to.row) throw bad(clean, `one end is of the ${from.row.name}s, the other of the ${to.row.name}s`);
+        if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a register");
+        if (from.style !== to.style) throw bad(clean, "both ends must be written in the same way");
         const count = to.address - from.address + 1;
-        if (count < 1) throw bad(clean, "the range runs backwards");
+        if (count < 1) throw bad(clean, "the range runs backwards", { why: "backwards" });
         if (count > MOST_RANGE) {
           const reason = "the range is too long";
           throw new PlcError("BAD_COUNT", { count, unit: `${from.kind}s`, reason, least: 1, most: MOST_RANGE });
         }
-        return finish(from, count, areas);
+        return finish(from, count, addressMode);
       }
-      function parseOne(part, whole, areas) {
-        const upper = part.trim().toUpperCase();
-        const raw = RAW.exec(upper);
-        if (raw) return parseRaw(raw, whole);
-        const found = NOTATION.exec(upper);
+      var FORMS = "like 400108, 40108 or hr107";
+      function parseOne(part, whole, addressMode) {
+        const clean = part.trim().toLowerCase();
+        const explicit = EXPLICIT.exec(clean);
+        if (explicit) {
+          const [, name, digits2, bit2] = explicit;
+          return place(rowOf(name), Number(digits2), { bit: bit2, whole, style: "explicit", first: 0 });
+        }
+        const found = PANEL.exec(clean);
         if (!found)
+          throw part === "" ? bad(whole, "one end of the range is missing") : bad(whole, `it is not ${FORMS}`, { why: "form" });
+        const [, digits, bit] = found;
+        if (digits.length !== 5 && digits.length !== 6) throw wrongDigits(whole, digits);
+        const row = byDigit.get(digits[0]);
+        if (!row)
           throw bad(
             whole,
-            part === "" ? "one end of the range is missing" : "it is neither like M0 or K127.12 nor like @0x00C0"
+            `the first digit is ${digits[0]}, not 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)`,
+            { why: "firstDigit", digit: digits[0] }
           );
-        const [, area, digits, bit] = found;
-        const row = areas.get(area);
-        if (!row) {
-          throw new PlcError("UNKNOWN_AREA", { address: whole, area, known: areas.list.map((each) => each.area).join(", ") });
-        }
-        const number = Number(digits);
-        if (row.as === "bits" && bit !== void 0) throw bad(whole, `${area} has contacts: a number without a bit`);
-        const size = row.as === "bits" ? row.words * 16 : row.words;
-        if (number >= size) throw new PlcError("OUT_OF_AREA", { address: whole, area, range: `${area}0..${area}${size - 1}` });
-        if (row.as === "bits") return { kind: "bit", address: row.base * 16 + number, row, raw: false };
-        if (bit === void 0) return { kind: "word", address: row.base + number, row, raw: false };
-        return { kind: "bit", address: (row.base + number) * 16 + bitOf(bit, whole), row, raw: false };
+        return place(row, Number(digits.slice(1)), { bit, whole, style: "panel", first: addressMode === "0-base" ? 0 : 1 });
       }
-      function parseRaw(found, whole) {
-        const [, isBit, digits, bit] = found;
-        const number = Number(digits);
-        const kind = isBit || bit !== void 0 ? "bit" : "word";
-        if (isBit && bit !== void 0) throw bad(whole, "@bit: is followed by a bit address alone");
-        const limit = isBit ? LAST_BIT : LAST_WORD;
-        if (number > limit) throw bad(whole, `the last ${isBit ? "bit" : "word"} address is 0x${hex(limit)}`);
-        const address = bit === void 0 ? number : number * 16 + bitOf(bit, whole);
-        return { kind, address, row: null, raw: true };
+      var wrongDigits = (whole, digits) => {
+        const { length } = digits;
+        const reason = `it has ${length === 1 ? "1 digit" : `${length} digits`} instead of 6 or 5`;
+        if (length > 5) return bad(whole, reason, { why: "digits", digits: length });
+        const padded = digits.padStart(6, "0");
+        const hint = `; a zero in front may have been lost, as in ${padded}`;
+        return bad(whole, reason + hint, { why: "zeroLost", digits: length, padded });
+      };
+      function place(row, number, { bit, whole, style, first }) {
+        const wire = number - first;
+        if (!(wire >= 0 && wire < SIZE)) {
+          const numbers = `${first}..${SIZE - 1 + first}`;
+          throw new PlcError("OUT_OF_AREA", {
+            address: whole,
+            area: `the table of ${row.name}s`,
+            range: `the numbers ${numbers}`,
+            notation: "modbus",
+            numbers
+          });
+        }
+        if (bit === void 0) return { kind: row.kind, address: row.base + wire, row, style };
+        if (row.kind === "bit") throw bad(whole, `a ${row.name} is a bit: nothing follows its number`, { why: "bitOfBit" });
+        return { kind: "bit", address: (row.base + wire) * 16 + bitOf(bit, whole), row, style };
       }
       function bitOf(digits, whole) {
+        if (digits.length !== 2) {
+          const hint = digits.length === 1 ? `: .${digits} could be .0${digits} or .${digits}0` : "";
+          throw bad(whole, `a bit of a register has two digits, .00 to .15${hint}`, { why: "bitDigits" });
+        }
         if (Number(digits) > 15) throw new PlcError("BAD_BIT", { address: whole, bit: Number(digits) });
         return Number(digits);
       }
-      function finish({ kind, address, row, raw }, count, areas) {
-        const place = raw ? covering({ kind, address, count }, areas) : row;
-        const last = address + count - 1;
-        const through = kind === "bit" && (last > LAST_BIT || !raw && row.as === "words");
+      function finish({ kind, address, row, style }, count, addressMode) {
+        const through = kind === "bit" && row.kind === "word";
         const result = {
           kind,
           address,
           count,
-          area: place.area,
-          raw,
-          text: raw ? rawText(kind, address, count) : areaText(kind, address, count, row),
-          writable: place.writable && !through,
-          certainty: place.certainty
+          table: row.table,
+          wire: placeOf(kind, address).wire,
+          text: formatAddress({ kind, address, count, style }, { addressMode }),
+          style,
+          writable: row.writable,
+          certainty: "certain"
         };
-        if (through) result.throughWord = { address: address >> 4, bit: address & 15, writable: place.writable };
+        if (through) result.throughWord = { address: address >> 4, bit: address & 15, writable: row.writable };
         return result;
       }
-      function covering({ kind, address, count }, areas) {
-        const first = kind === "bit" ? address >> 4 : address;
-        const last = kind === "bit" ? address + count - 1 >> 4 : address + count - 1;
-        const rows = [];
-        for (let word = first; word <= last; ) {
-          const row = areas.at(word);
-          if (!row) return { area: null, writable: false, certainty: "unconfirmed" };
-          rows.push(row);
-          word = row.base + row.words;
-        }
-        const certainty = ["unconfirmed", "likely", "certain"].find((each) => rows.some((row) => row.certainty === each));
-        return { area: rows.length === 1 ? rows[0].area : null, writable: rows.every((row) => row.writable), certainty };
+      function placeOf(kind, address) {
+        const at = (name, number) => TABLES.find((row) => row.kind === name && number >= row.base && number < row.base + SIZE);
+        const own = Number.isInteger(address) ? at(kind, address) : void 0;
+        if (own) return { table: own.table, wire: address - own.base };
+        const word = kind === "bit" && Number.isInteger(address) && address >= 0 ? at("word", address >> 4) : void 0;
+        if (word) return { table: word.table, wire: (address >> 4) - word.base, bit: address & 15 };
+        throw bad(String(address), `no ${kind} has this absolute address`);
       }
-      function rawText(kind, address, count) {
-        const one = (at) => kind === "word" ? `@0x${hex(at)}` : `@0x${hex(at >> 4)}.${at & 15}`;
-        return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
-      }
-      function areaText(kind, address, count, row) {
+      function formatAddress({ kind, address, count = 1, style = "panel" }, { addressMode = "1-base" } = {}) {
         const one = (at) => {
-          if (kind === "word") return `${row.area}${at - row.base}`;
-          return row.as === "bits" ? `${row.area}${at - row.base * 16}` : `${row.area}${(at >> 4) - row.base}.${at & 15}`;
+          const { table, wire, bit } = placeOf(kind, at);
+          const tail = bit === void 0 ? "" : `.${String(bit).padStart(2, "0")}`;
+          if (style === "explicit") return `${table}${wire}${tail}`;
+          const number = addressMode === "0-base" ? wire : wire + 1;
+          return `${rowOf(table).digit}${String(number).padStart(5, "0")}${tail}`;
         };
         return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
       }
-      function formatAddress({ kind, address, count = 1 }, areas = STANDARD) {
-        checkPlace(kind, address, count);
-        const last = address + count - 1;
-        const row = areas.at(kind === "bit" ? address >> 4 : address);
-        const inside = row && areas.at(kind === "bit" ? last >> 4 : last) === row;
-        if (!inside || kind === "word" && row.as === "bits") return rawText(kind, address, count);
-        return areaText(kind, address, count, row);
+      function describeAddress({ kind, address, count = 1 }, options = {}) {
+        const first = placeOf(kind, address);
+        const last = placeOf(kind, address + count - 1);
+        const row = rowOf(first.table);
+        const span = spanOf(first.wire, last.wire);
+        const read = hex(readFunction(first.table), 2);
+        if (options.write && !row.writable) return `${row.name}s cannot be written`;
+        const code = options.write ? writeCode(first.table, last.wire - first.wire + 1, options) : read;
+        if (first.bit === void 0) return `function ${code}, ${span}`;
+        if (options.write) return `functions ${read} and ${code}, read-modify-write of ${span}`;
+        return `function ${code}, ${span}, ${count === 1 ? `bit ${first.bit}` : `${count} bits`}`;
       }
-      function checkPlace(kind, address, count) {
-        const limit = kind === "bit" ? LAST_WORD * 16 + 15 : LAST_WORD;
-        const known = kind === "bit" || kind === "word";
-        if (known && Number.isInteger(address) && Number.isInteger(count) && address >= 0 && count >= 1) {
-          if (address + count - 1 <= limit) return;
-        }
-        throw bad(String(address), `no ${kind} has this absolute address`);
+      function writeCode(table, count, { coilFunction = "0F", holdingFunction = "10" }) {
+        const chosen = table === "co" ? coilFunction : holdingFunction;
+        const single = chosen === "05" || chosen === "06" || chosen === "auto" && count === 1;
+        return hex(
+          /** @type {number} */
+          writeFunction(table, { single }),
+          2
+        );
       }
-      function describeAddress(place, { steps = 2, write = false } = {}) {
-        const words = place.kind === "word" || place.throughWord !== void 0;
-        const row = functionOf(`${write ? "write" : "read"}${words ? "Words" : "Bits"}`);
-        const code = hex(queryCode(row, steps)).slice(2);
-        const last = place.address + place.count - 1;
-        if (!words) return `function ${code}, ${span("bit", place.address, last)}`;
-        const first = place.throughWord ? place.throughWord.address : place.address;
-        const end = place.throughWord ? last >> 4 : last;
-        const decimal = first === end ? `(${first})` : `(${first}–${end})`;
-        const bit = !place.throughWord ? "" : place.count === 1 ? `, bit ${place.throughWord.bit}` : `, ${place.count} bits`;
-        return `function ${code}, ${span("word", first, end)} ${decimal}${bit}`;
-      }
-      var span = (unit, first, last) => first === last ? `${unit} address ${hex(first)}h` : `${unit} addresses ${hex(first)}h–${hex(last)}h`;
-      var bad = (address, reason) => new PlcError("BAD_ADDRESS", { address, reason });
-      module.exports = { parseAddress, formatAddress, describeAddress };
+      var spanOf = (first, last) => first === last ? `wire address ${first} (${hex(first)}h)` : `wire addresses ${first}–${last} (${hex(first)}h–${hex(last)}h)`;
+      var hex = (value, digits = 4) => value.toString(16).toUpperCase().padStart(digits, "0");
+      var bad = (address, reason, more = {}) => new PlcError("BAD_ADDRESS", { address: String(address), reason, notation: "modbus", ...more });
+      module.exports = { TABLES, describeAddress, formatAddress, parseAddress, placeOf, spanOf };
     }
   });
 
@@ -1630,11 +1259,329 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/tag/modbus-notation.js
+  var require_modbus_notation = __commonJS({
+    "lib/tag/modbus-notation.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { formatAddress, parseAddress, placeOf, TABLES } = require_address();
+      var { readTags } = require_tags();
+      var MODES = ["1-base", "0-base"];
+      var lastOf = ({ kind, address }) => {
+        const { table, bit } = placeOf(kind, address);
+        const row = (
+          /** @type {any} */
+          TABLES.find((each) => each.table === table)
+        );
+        const last = row.base + row.size - 1;
+        return bit === void 0 ? last : last * 16 + 15;
+      };
+      var DIGITS = /^\d+$/;
+      var BIT_OF_REGISTER = /^\d{5,6}\.\d$/;
+      var LAST_NUMBER = 65536;
+      var doubtOf = (text, isBit) => {
+        if (BIT_OF_REGISTER.test(text)) return `${text} may have been ${text}0: a bit has two digits`;
+        if (!DIGITS.test(text)) return "";
+        if (isBit && /^(3|4)(\d{4}|\d{5})$/.test(text)) return `${text} is a register; it may have been the bit ${text}.00`;
+        if (text.length < 5) return `${text} may have been ${text.padStart(6, "0")}: it has too few digits`;
+        const eaten = text.length === 5 && text[0] !== "0" && Number(text) <= LAST_NUMBER;
+        return eaten ? `${text} may have been 0${text}, a coil: write six digits to be sure` : "";
+      };
+      var doubtsOf = (row) => {
+        const [address, type = ""] = String(row.address ?? "").split(":");
+        const isBit = [type, row.type].some((each) => /^\s*bool\s*$/i.test(String(each ?? "")));
+        const doubts = address.split("..").map((end) => doubtOf(end.trim(), isBit));
+        return [...new Set(doubts.filter(Boolean))];
+      };
+      var modbusNotation = ({ addressMode = "1-base", tags, wordOrder = "low", byteOrder = "high" } = {}) => {
+        if (!MODES.includes(addressMode)) {
+          const reason = `it must be ${MODES.join(" or ")}`;
+          throw new PlcError("BAD_SETTING", { setting: "addressMode", value: addressMode, reason });
+        }
+        const notation = {
+          addressMode,
+          example: "400108",
+          parse: (text) => parseAddress(text, { addressMode }),
+          format: (at) => formatAddress(at, { addressMode }),
+          last: lastOf,
+          packs: (address) => address.kind === "bit" && !address.throughWord,
+          doubts: doubtsOf,
+          wordOrder,
+          byteOrder
+        };
+        return { ...notation, tags: readTags(tags, notation) };
+      };
+      module.exports = { modbusNotation };
+    }
+  });
+
+  // lib/codec/nx/areas.js
+  var require_areas = __commonJS({
+    "lib/codec/nx/areas.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var LAST_WORD = 65535;
+      var LAST_BIT = 65535;
+      var MOST_ROWS = 64;
+      var AREAS = table([
+        // area  base   words as       certainty      writable note
+        ["R", 0, 128, "both", "likely", true, "external I/O"],
+        ["L", 128, 64, "both", "likely", true, "link"],
+        ["M", 192, 128, "both", "certain", true, "internal relay"],
+        ["K", 320, 128, "both", "certain", true, "keep (retentive)"],
+        ["F", 448, 16, "both", "unconfirmed", false, "special flags"],
+        ["TC", 464, 16, "bits", "unconfirmed", false, "timer and counter contacts"],
+        ["W", 512, 2048, "words", "unconfirmed", false, "data"],
+        ["SV", 2560, 256, "words", "unconfirmed", false, "set values"],
+        ["PV", 2816, 256, "words", "unconfirmed", false, "present values"],
+        ["SR", 3072, 512, "words", "unconfirmed", false, "special registers"]
+      ]);
+      function table(rows) {
+        return Object.freeze(
+          rows.map(
+            ([area, base, words, as, certainty, writable, note]) => Object.freeze({ area, base, words, as, certainty, writable, note })
+          )
+        );
+      }
+      var ACCESS = ["both", "bits", "words"];
+      var PROPERTIES = ["area", "base", "words", "as", "confirmed", "writable", "remove", "note"];
+      var hex = (value) => `$${value.toString(16).toUpperCase().padStart(4, "0")}`;
+      var span = (row) => `${row.area} (${hex(row.base)}..${hex(row.base + row.words - 1)})`;
+      function areaMap(rows = []) {
+        if (!Array.isArray(rows)) throw bad("table", "it is not a list of rows");
+        if (rows.length > MOST_ROWS) throw bad("table", `${rows.length} rows, at most ${MOST_ROWS}`);
+        const byName = new Map(AREAS.map((row) => [row.area, row]));
+        const seen = /* @__PURE__ */ new Set();
+        for (const given of rows) {
+          const name = nameOf(given);
+          if (seen.has(name)) throw bad(name, "two rows have this name");
+          seen.add(name);
+          const row = merge(name, given, byName.get(name));
+          if (row) byName.set(name, row);
+          else byName.delete(name);
+        }
+        const list = Object.freeze([...byName.values()].sort((a, b) => a.base - b.base));
+        for (let i = 1; i < list.length; i++) {
+          if (list[i - 1].base + list[i - 1].words > list[i].base) {
+            throw bad(list[i].area, `${span(list[i])} overlaps ${span(list[i - 1])}`);
+          }
+        }
+        return Object.freeze({
+          list,
+          get: (name) => byName.get(name),
+          at: (word) => list.find((row) => word >= row.base && word < row.base + row.words)
+        });
+      }
+      function nameOf(given) {
+        if (given === null || typeof given !== "object" || Array.isArray(given)) throw bad("?", "a row must be an object");
+        const name = own(given, "area");
+        if (typeof name !== "string" || !/^[A-Za-z]{1,4}$/.test(name))
+          throw bad(name, "the name must be 1 to 4 letters A to Z");
+        const unknown = Object.keys(given).find((key) => !PROPERTIES.includes(key));
+        if (unknown !== void 0) throw bad(name, `it has the unknown property ${unknown}`);
+        return name.toUpperCase();
+      }
+      function merge(name, given, old) {
+        if (flag(name, given, "remove")) {
+          if (!old) throw bad(name, "there is no such area to remove");
+          return null;
+        }
+        const base = number(name, given, "base", old);
+        const words = number(name, given, "words", old);
+        const as = own(given, "as") ?? old?.as ?? "both";
+        if (!ACCESS.includes(as)) throw bad(name, '"as" must be both, bits or words');
+        if (words < 1) throw bad(name, "it must have at least one word");
+        const last = base + words - 1;
+        if (last > LAST_WORD) throw bad(name, `it ends at ${hex(last)}, after the last word ${hex(LAST_WORD)}`);
+        if (as === "bits" && last * 16 + 15 > LAST_BIT)
+          throw bad(name, `its bits end after ${hex(LAST_BIT)}: use "as": "words"`);
+        return Object.freeze({ area: name, base, words, as, ...trust(name, given, { base, words, as, old }) });
+      }
+      function trust(name, given, { base, words, as, old }) {
+        const confirmed = flag(name, given, "confirmed");
+        const writable = flag(name, given, "writable");
+        const note = own(given, "note") ?? old?.note ?? "";
+        if (typeof note !== "string") throw bad(name, "the note must be text");
+        const same = old && old.base === base && old.words === words && old.as === as;
+        const known = same ? old : { certainty: "unconfirmed", writable: false };
+        const sure = confirmed ? { certainty: "certain", writable: true } : known;
+        if (writable && !sure.writable) throw bad(name, "it can be writable only if it is confirmed");
+        return { certainty: sure.certainty, writable: sure.writable && writable !== false, note: note.slice(0, 100) };
+      }
+      var own = (row, key) => Object.hasOwn(row, key) ? row[key] : void 0;
+      function flag(name, row, key) {
+        const value = own(row, key);
+        if (value !== void 0 && typeof value !== "boolean") throw bad(name, `"${key}" must be true or false`);
+        return value;
+      }
+      function number(name, row, key, old) {
+        const given = own(row, key);
+        if ((given === void 0 || given === "") && old) return old[key];
+        const text = typeof given === "string" ? given.trim().replace(/^\$/, "0x") : given;
+        const value = typeof text === "string" && /^(0x[0-9a-f]{1,5}|\d{1,6})$/i.test(text) ? Number(text) : text;
+        if (!Number.isInteger(value) || value < 0 || value > LAST_WORD + 1) {
+          throw bad(name, `"${key}" must be a whole number from 0 to ${LAST_WORD}, or hex as in 0x1C0`);
+        }
+        return value;
+      }
+      var bad = (name, reason) => new PlcError("BAD_AREA", { name, reason });
+      module.exports = { AREAS, LAST_BIT, LAST_WORD, areaMap };
+    }
+  });
+
+  // lib/codec/nx/address.js
+  var require_address2 = __commonJS({
+    "lib/codec/nx/address.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { areaMap, LAST_BIT, LAST_WORD } = require_areas();
+      var { functionOf, queryCode } = require_functions();
+      var MOST_CHARACTERS = 64;
+      var MOST_RANGE = 4096;
+      var STANDARD = areaMap();
+      var NOTATION = /^([A-Z]{1,4})(\d{1,8})(?:\.(\d{1,8}))?$/;
+      var RAW = /^@(BIT:)?(0X[0-9A-F]{1,8}|\d{1,8})(?:\.(\d{1,8}))?$/;
+      var hex = (value) => value.toString(16).toUpperCase().padStart(4, "0");
+      function parseAddress(text, areas = STANDARD) {
+        if (typeof text !== "string") throw new PlcError("BAD_ADDRESS", { address: text, reason: "it is not text" });
+        const clean = text.trim();
+        if (clean === "") throw bad(text, "it is empty");
+        if (clean.length > MOST_CHARACTERS)
+          throw bad(clean.slice(0, 20) + "…", `it has more than ${MOST_CHARACTERS} characters`);
+        const [first, last, more] = clean.split(/\s*\.\.\s*/);
+        if (more !== void 0) throw bad(clean, "a range has two ends");
+        const from = parseOne(first, clean, areas);
+        if (last === void 0) return finish(from, 1, areas);
+        return range(from, parseOne(last, clean, areas), { clean, areas });
+      }
+      function range(from, to, { clean, areas }) {
+        if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a word");
+        if (from.raw !== to.raw || !from.raw && from.row !== to.row) throw bad(clean, "both ends must lie in one area");
+        const count = to.address - from.address + 1;
+        if (count < 1) throw bad(clean, "the range runs backwards");
+        if (count > MOST_RANGE) {
+          const reason = "the range is too long";
+          throw new PlcError("BAD_COUNT", { count, unit: `${from.kind}s`, reason, least: 1, most: MOST_RANGE });
+        }
+        return finish(from, count, areas);
+      }
+      function parseOne(part, whole, areas) {
+        const upper = part.trim().toUpperCase();
+        const raw = RAW.exec(upper);
+        if (raw) return parseRaw(raw, whole);
+        const found = NOTATION.exec(upper);
+        if (!found)
+          throw bad(
+            whole,
+            part === "" ? "one end of the range is missing" : "it is neither like M0 or K127.12 nor like @0x00C0"
+          );
+        const [, area, digits, bit] = found;
+        const row = areas.get(area);
+        if (!row) {
+          throw new PlcError("UNKNOWN_AREA", { address: whole, area, known: areas.list.map((each) => each.area).join(", ") });
+        }
+        const number = Number(digits);
+        if (row.as === "bits" && bit !== void 0) throw bad(whole, `${area} has contacts: a number without a bit`);
+        const size = row.as === "bits" ? row.words * 16 : row.words;
+        if (number >= size) throw new PlcError("OUT_OF_AREA", { address: whole, area, range: `${area}0..${area}${size - 1}` });
+        if (row.as === "bits") return { kind: "bit", address: row.base * 16 + number, row, raw: false };
+        if (bit === void 0) return { kind: "word", address: row.base + number, row, raw: false };
+        return { kind: "bit", address: (row.base + number) * 16 + bitOf(bit, whole), row, raw: false };
+      }
+      function parseRaw(found, whole) {
+        const [, isBit, digits, bit] = found;
+        const number = Number(digits);
+        const kind = isBit || bit !== void 0 ? "bit" : "word";
+        if (isBit && bit !== void 0) throw bad(whole, "@bit: is followed by a bit address alone");
+        const limit = isBit ? LAST_BIT : LAST_WORD;
+        if (number > limit) throw bad(whole, `the last ${isBit ? "bit" : "word"} address is 0x${hex(limit)}`);
+        const address = bit === void 0 ? number : number * 16 + bitOf(bit, whole);
+        return { kind, address, row: null, raw: true };
+      }
+      function bitOf(digits, whole) {
+        if (Number(digits) > 15) throw new PlcError("BAD_BIT", { address: whole, bit: Number(digits) });
+        return Number(digits);
+      }
+      function finish({ kind, address, row, raw }, count, areas) {
+        const place = raw ? covering({ kind, address, count }, areas) : row;
+        const last = address + count - 1;
+        const through = kind === "bit" && (last > LAST_BIT || !raw && row.as === "words");
+        const result = {
+          kind,
+          address,
+          count,
+          area: place.area,
+          raw,
+          text: raw ? rawText(kind, address, count) : areaText(kind, address, count, row),
+          writable: place.writable && !through,
+          certainty: place.certainty
+        };
+        if (through) result.throughWord = { address: address >> 4, bit: address & 15, writable: place.writable };
+        return result;
+      }
+      function covering({ kind, address, count }, areas) {
+        const first = kind === "bit" ? address >> 4 : address;
+        const last = kind === "bit" ? address + count - 1 >> 4 : address + count - 1;
+        const rows = [];
+        for (let word = first; word <= last; ) {
+          const row = areas.at(word);
+          if (!row) return { area: null, writable: false, certainty: "unconfirmed" };
+          rows.push(row);
+          word = row.base + row.words;
+        }
+        const certainty = ["unconfirmed", "likely", "certain"].find((each) => rows.some((row) => row.certainty === each));
+        return { area: rows.length === 1 ? rows[0].area : null, writable: rows.every((row) => row.writable), certainty };
+      }
+      function rawText(kind, address, count) {
+        const one = (at) => kind === "word" ? `@0x${hex(at)}` : `@0x${hex(at >> 4)}.${at & 15}`;
+        return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
+      }
+      function areaText(kind, address, count, row) {
+        const one = (at) => {
+          if (kind === "word") return `${row.area}${at - row.base}`;
+          return row.as === "bits" ? `${row.area}${at - row.base * 16}` : `${row.area}${(at >> 4) - row.base}.${at & 15}`;
+        };
+        return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
+      }
+      function formatAddress({ kind, address, count = 1 }, areas = STANDARD) {
+        checkPlace(kind, address, count);
+        const last = address + count - 1;
+        const row = areas.at(kind === "bit" ? address >> 4 : address);
+        const inside = row && areas.at(kind === "bit" ? last >> 4 : last) === row;
+        if (!inside || kind === "word" && row.as === "bits") return rawText(kind, address, count);
+        return areaText(kind, address, count, row);
+      }
+      function checkPlace(kind, address, count) {
+        const limit = kind === "bit" ? LAST_WORD * 16 + 15 : LAST_WORD;
+        const known = kind === "bit" || kind === "word";
+        if (known && Number.isInteger(address) && Number.isInteger(count) && address >= 0 && count >= 1) {
+          if (address + count - 1 <= limit) return;
+        }
+        throw bad(String(address), `no ${kind} has this absolute address`);
+      }
+      function describeAddress(place, { steps = 2, write = false } = {}) {
+        const words = place.kind === "word" || place.throughWord !== void 0;
+        const row = functionOf(`${write ? "write" : "read"}${words ? "Words" : "Bits"}`);
+        const code = hex(queryCode(row, steps)).slice(2);
+        const last = place.address + place.count - 1;
+        if (!words) return `function ${code}, ${span("bit", place.address, last)}`;
+        const first = place.throughWord ? place.throughWord.address : place.address;
+        const end = place.throughWord ? last >> 4 : last;
+        const decimal = first === end ? `(${first})` : `(${first}–${end})`;
+        const bit = !place.throughWord ? "" : place.count === 1 ? `, bit ${place.throughWord.bit}` : `, ${place.count} bits`;
+        return `function ${code}, ${span("word", first, end)} ${decimal}${bit}`;
+      }
+      var span = (unit, first, last) => first === last ? `${unit} address ${hex(first)}h` : `${unit} addresses ${hex(first)}h–${hex(last)}h`;
+      var bad = (address, reason) => new PlcError("BAD_ADDRESS", { address, reason });
+      module.exports = { parseAddress, formatAddress, describeAddress };
+    }
+  });
+
   // lib/tag/nx-notation.js
   var require_nx_notation = __commonJS({
     "lib/tag/nx-notation.js"(exports, module) {
       "use strict";
-      var { formatAddress, parseAddress } = require_address();
+      var { formatAddress, parseAddress } = require_address2();
       var { areaMap, LAST_WORD } = require_areas();
       var { readTags } = require_tags();
       var lastOf = (address, areas) => {
@@ -1655,6 +1602,606 @@ var nxlineSerialPlc = (() => {
         return { ...notation, tags: readTags(tags, notation) };
       };
       module.exports = { nxNotation };
+    }
+  });
+
+  // scripts/editor/texts.js
+  var require_texts = __commonJS({
+    "scripts/editor/texts.js"(exports, module) {
+      "use strict";
+      var SHARED = "@nxline/node-red-serial-plc/plc-line:";
+      var t = (key, values) => RED._(`${SHARED}${key}`, values);
+      var translate = (key, values, text) => {
+        const translated = RED._(`${SHARED}${key}`, { ...values, defaultValue: text });
+        return /__\w+__/.test(translated) ? text : translated;
+      };
+      var errorText = (error) => {
+        const text = String(error.message || error);
+        const { code, details } = error;
+        if (!code || !details) return text;
+        const { why, notation, reason } = details;
+        const values = why ? { ...details, reason: translate(`why.${why}`, details, reason) } : details;
+        const general = translate(`error.${code}`, values, text);
+        return notation ? translate(`error.${code}_${notation.toUpperCase()}`, values, general) : general;
+      };
+      var causeText = ({ code, text, remedy, details }) => translate(`cause.${code}`, details || {}, `${capital(text)}. ${remedy}`);
+      var capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+      var reasonOf = (error) => errorText(error.cause && error.cause.code ? error.cause : error);
+      module.exports = { t, capital, causeText, errorText, reasonOf };
+    }
+  });
+
+  // scripts/editor/model.js
+  var require_model = __commonJS({
+    "scripts/editor/model.js"(exports, module) {
+      "use strict";
+      var { functionOf, queryCode } = require_functions();
+      var { TABLES, placeOf } = require_address();
+      var { readFunction, writeFunction } = require_functions2();
+      var { parseItem } = require_item();
+      var { modbusNotation } = require_modbus_notation();
+      var { nxNotation } = require_nx_notation();
+      var { t } = require_texts();
+      var attempt = (make, otherwise) => {
+        try {
+          return make();
+        } catch {
+          return otherwise;
+        }
+      };
+      var hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, "0");
+      var unitOf = (item, bits) => {
+        const number = item.kind === "word" ? item.count * item.type.words : item.count;
+        if (item.throughWord) return t("editor.through");
+        if (number === 1) return t(bits ? "editor.bit" : "editor.word");
+        return t(bits ? "editor.bits" : "editor.words", { number });
+      };
+      var describeNx = (item, { steps = 2 }, write) => {
+        const bits = item.kind === "bit" && !item.throughWord;
+        const row = functionOf((write ? "write" : "read") + (bits ? "Bits" : "Words"));
+        const code = hex(queryCode(row, String(steps) === "4" ? 4 : 2), 2);
+        const address = hex(item.throughWord ? Math.floor(item.address / 16) : item.address, 4);
+        return t("editor.goesOut", { code, address, what: unitOf(item, bits) });
+      };
+      var lengthOf = ({ kind, count, type, packed }) => count * (kind === "word" || packed ? type.words : 1) * (packed ? 16 : 1);
+      var SINGLE = { "05": () => true, "06": () => true, auto: (count) => count === 1 };
+      var writeCode = (table, count, { coilFunction = "0F", holdingFunction = "10" }) => {
+        const chosen = table === "co" ? coilFunction : holdingFunction;
+        const single = SINGLE[chosen] ? SINGLE[chosen](count) : false;
+        return hex(writeFunction(table, { single }), 2);
+      };
+      var whereOf = (first, last) => {
+        const values = { first, last, firstHex: hex(first, 4), lastHex: hex(last, 4) };
+        return t(first === last ? "editor.wire" : "editor.wires", values);
+      };
+      var isWritable = (table) => TABLES.find((row) => row.table === table).writable;
+      var canOnlyBeRead = (item, { type }) => type === "chino-config" && !isWritable(placeOf(item.kind, item.address).table);
+      var describeModbus = (item, device, write) => {
+        const length = lengthOf(item);
+        const { table, wire, bit } = placeOf(item.kind, item.address);
+        const last = placeOf(item.kind, item.address + length - 1).wire;
+        const where = whereOf(wire, last);
+        const read = hex(readFunction(table), 2);
+        if (write && !isWritable(table)) return t("editor.readable");
+        const code = write ? writeCode(table, last - wire + 1, device) : read;
+        if (bit === void 0) return t("editor.sent", { code, where });
+        if (write) return t("editor.changed", { read, code, where });
+        const bits = length === 1 ? t("editor.oneBit", { number: bit }) : t("editor.severalBits", { number: length });
+        return `${t("editor.sent", { code, where })}, ${bits}`;
+      };
+      var oneOf = (value, known) => known.includes(value) ? value : known[0];
+      var DEVICES = {
+        "nx-config": {
+          label: "editor.station",
+          notation: ({ areas }, tags) => nxNotation({ areas: areas || [], tags }),
+          // faulty area rows count as none
+          usable: (device) => ({ areas: attempt(() => nxNotation({ areas: device.areas || [] }) && device.areas, []) || [] }),
+          describe: describeNx
+        },
+        "chino-config": {
+          label: "editor.regulator",
+          notation: ({ addressMode, wordOrder }, tags) => modbusNotation({
+            addressMode: oneOf(addressMode, ["1-base", "0-base"]),
+            wordOrder: oneOf(wordOrder, ["low", "high"]),
+            tags
+          }),
+          usable: (device) => device,
+          describe: describeModbus
+        }
+      };
+      var TYPES = Object.keys(DEVICES);
+      var kindOf = (device) => DEVICES[device && device.type || "nx-config"] || DEVICES["nx-config"];
+      var notationOf = (device) => kindOf(device).notation(device || {});
+      var usableTags = (notation, device, tags) => {
+        const names = /* @__PURE__ */ new Set();
+        return tags.filter((row) => {
+          const [name] = attempt(() => [...notation(device, [row]).tags.keys()], []);
+          return name !== void 0 && !names.has(name) && names.add(name);
+        });
+      };
+      var notationWithTags = (device) => {
+        const { notation, usable } = kindOf(device);
+        const own = usable(device || {});
+        const tags = device && device.tags || [];
+        return attempt(() => notation(own, tags), null) || notation(own, usableTags(notation, own, Array.isArray(tags) ? tags : []));
+      };
+      var deviceLabel = (device) => t(kindOf(device).label, { station: device.station === "" ? "?" : device.station });
+      var deviceName = (device) => device.name || deviceLabel(device);
+      var describe = (item, device, { write = false } = {}) => kindOf(device).describe(item, device || {}, write);
+      var unsure = (item, notation) => attempt(() => notation.parse(item.addressText).certainty === "unconfirmed", false);
+      module.exports = {
+        TYPES,
+        notationOf,
+        notationWithTags,
+        deviceLabel,
+        deviceName,
+        describe,
+        unsure,
+        parseItem,
+        attempt,
+        canOnlyBeRead,
+        hex
+      };
+    }
+  });
+
+  // scripts/editor/line-use.js
+  var require_line_use = __commonJS({
+    "scripts/editor/line-use.js"(exports, module) {
+      "use strict";
+      var { LISTENERS, portConflict } = require_listening_rules();
+      var { PROPERTIES } = require_properties();
+      var { TYPES, deviceName } = require_model();
+      var { t } = require_texts();
+      var nameOf = (node) => node.name || LISTENERS[node.type].title;
+      var listenersOn = (line) => {
+        const found = [];
+        RED.nodes.eachNode((node) => {
+          if (LISTENERS[node.type] && node.line === line && !node.d) found.push(node);
+          return true;
+        });
+        return found;
+      };
+      var listenerOf = (line) => {
+        const [first] = line ? listenersOn(line) : [];
+        return first ? nameOf(first) : "";
+      };
+      var settingsOf = (type, read) => Object.fromEntries(Object.keys(PROPERTIES[type]).map((name) => [name, read(name)]));
+      var lineOfListener = (node, read) => {
+        const line = read("line");
+        let polled = "";
+        RED.nodes.eachConfig((other) => {
+          if (TYPES.includes(other.type) && other.line === line && !other.d) polled = polled || deviceName(other);
+          return true;
+        });
+        if (polled) return t("problem.polled", { other: polled });
+        const own = { type: node.type, settings: settingsOf(node.type, read) };
+        for (const other of listenersOn(line)) {
+          if (other.id === node.id) continue;
+          const reason = portConflict(own, { type: other.type, settings: other });
+          if (reason) return t("problem.otherCut", { other: nameOf(other), reason });
+        }
+        return true;
+      };
+      module.exports = { lineOfListener, listenerOf };
+    }
+  });
+
+  // scripts/editor/widgets.js
+  var require_widgets = __commonJS({
+    "scripts/editor/widgets.js"(exports, module) {
+      "use strict";
+      var { t } = require_texts();
+      var tabs = (id, pages) => {
+        const widget = RED.tabs.create({
+          id,
+          onchange(tab) {
+            $(`#${id}-content`).children().hide();
+            $(`#${tab.id}`).show();
+            $(`#${tab.id}`).trigger("nxline-shown");
+          }
+        });
+        pages.forEach(([page, label]) => widget.addTab({ id: page, label }));
+        return widget;
+      };
+      var keepUnknown = (field, value) => {
+        if (value === void 0 || value === null || value === "") return;
+        const known = field.find("option").filter((_, option) => option.value === String(value)).length > 0;
+        if (!known) field.append($("<option>").attr("value", value).text(value));
+        field.val(String(value));
+      };
+      var fillDefaults = (node, prefix) => {
+        for (const [name, { value }] of Object.entries(node._def.defaults)) {
+          const field = $(`#${prefix}${name}`);
+          if (field.length === 0) continue;
+          if (node[name] === void 0 && value !== "" && !Array.isArray(value)) {
+            if (field.is(":checkbox")) field.prop("checked", value);
+            else field.val(String(value));
+          }
+          if (field.is("select") && !field.prop("multiple") && !name.match(/^(line|plc|regulator)$/)) {
+            keepUnknown(field, node[name] === void 0 ? value : node[name]);
+          }
+        }
+      };
+      var offerRow = ({ value, hint = "", first = "" }) => ({
+        value,
+        label: $("<span>").text(first || value).append(
+          $("<span>").css({ color: "var(--red-ui-secondary-text-color)", marginLeft: "8px" }).text(first ? value : hint)
+        )
+      });
+      var offersFor = (text, offers, usable) => {
+        const wanted = text.trim().toLowerCase();
+        const found = offers.filter((offer) => `${offer.value} ${offer.hint || ""} ${offer.first || ""}`.toLowerCase().includes(wanted)).slice(0, 50);
+        if (wanted === "" || found.length === 0 || !usable(text.trim())) return found;
+        const others = found.filter(({ value }) => value !== text.trim());
+        return others.length === 0 ? [] : [{ value: text.trim() }, ...others];
+      };
+      var suggest = (field, offers, usable) => {
+        field.on("keydown", ({ key }) => {
+          const before = field.val();
+          if (key === "Tab" || key === "Enter") setTimeout(() => field.val() !== before && field.trigger("change"), 0);
+        });
+        field.autoComplete({
+          minLength: 0,
+          search: (value, answer) => answer(offersFor(value, offers(), usable).map(offerRow))
+        });
+        field.on("click", () => field.val() === "" && field.trigger("keyup"));
+      };
+      var copyable = (text) => $('<a href="#" class="nxline-copy">').css({ fontFamily: "var(--red-ui-monospace-font)", whiteSpace: "nowrap" }).attr("title", t("editor.copy")).text(text).prepend('<i class="fa fa-clipboard" style="margin-right: 4px"></i>').on("click", function(event) {
+        event.preventDefault();
+        RED.clipboard.copyText(text, $(this));
+      });
+      var note = () => $('<div class="nxline-note">').css({
+        fontSize: "12px",
+        lineHeight: "16px",
+        minHeight: "16px",
+        color: "var(--red-ui-secondary-text-color)"
+      });
+      var say = (block, text, bad = false) => block.empty().text(text).css("color", bad ? "var(--red-ui-text-color-error)" : "var(--red-ui-secondary-text-color)");
+      var cell = (name, value, { width = "80px", grow = false, shows = t(`column.${name}`), hint = t(`tooltip.${name}`) } = {}) => $('<input type="text">').addClass(`nxline-${name}`).attr({ placeholder: shows, title: hint, "aria-label": t(`column.${name}`) }).css({ width, flexGrow: grow ? 1 : 0, minWidth: 0, margin: 0 }).val(value === void 0 || value === null ? "" : String(value));
+      var pick = (name, value, options) => {
+        const field = $("<select>").addClass(`nxline-${name}`).attr({ title: t(`tooltip.${name}`), "aria-label": t(`column.${name}`) }).css({ width: "auto", margin: 0 });
+        options.forEach(([key, label]) => field.append($("<option>").attr("value", key).text(label)));
+        keepUnknown(field, value);
+        return field;
+      };
+      var truthy = (value) => Boolean(value) && value !== "false";
+      var tick = (name, value) => {
+        const box = $('<input type="checkbox">').addClass(`nxline-${name}`).css({ width: "auto", margin: "0 4px 0 0" }).prop("checked", truthy(value));
+        const label = $("<label>").css({ width: "auto", margin: 0, display: "inline-flex", alignItems: "center", whiteSpace: "nowrap" }).attr("title", t(`tooltip.${name}`)).append(box).append(document.createTextNode(t(`column.${name}`)));
+        return { box, label };
+      };
+      var mark = (text) => $("<span>").css({ color: "var(--red-ui-secondary-text-color)", whiteSpace: "nowrap", fontSize: "12px" }).text(text);
+      var flex = (...children) => $("<div>").css({ display: "flex", gap: "4px", alignItems: "center", marginBottom: "3px" }).append(children);
+      module.exports = { tabs, fillDefaults, suggest, offersFor, copyable, note, say, cell, pick, tick, truthy, flex, mark };
+    }
+  });
+
+  // lib/device/options.js
+  var require_options = __commonJS({
+    "lib/device/options.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var blank = (value) => value === void 0 || value === null || typeof value === "string" && value.trim() === "";
+      var wholeNumber = (setting, value, { fallback, least, most }) => {
+        if (blank(value)) return fallback;
+        const number = typeof value === "string" ? Number(value) : value;
+        if (Number.isInteger(number) && number >= least && number <= most) return number;
+        throw new PlcError("BAD_SETTING", { setting, value, reason: `a whole number from ${least} to ${most} is needed` });
+      };
+      var choice = (setting, value, known) => {
+        if (blank(value)) return known[0];
+        const found = known.find((each) => String(each) === String(value).trim());
+        if (found !== void 0) return found;
+        throw new PlcError("BAD_SETTING", { setting, value, reason: `known are ${known.join(", ")}` });
+      };
+      var nameOf = (value, station) => blank(value) ? `station ${station}` : String(value).trim();
+      var readRanges = (value, notation) => {
+        const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(",");
+        return given.map((text) => String(text).trim()).filter((text) => text !== "").map((text) => {
+          const { kind, address, count } = notation.parse(text);
+          const size = kind === "word" ? 16 : 1;
+          return { start: address * size, end: (address + count) * size };
+        });
+      };
+      var isOn = (value) => value === true || value === "true";
+      module.exports = { blank, choice, isOn, nameOf, readRanges, wholeNumber };
+    }
+  });
+
+  // lib/device/mixed.js
+  var require_mixed = __commonJS({
+    "lib/device/mixed.js"(exports, module) {
+      "use strict";
+      var ONLY_PLC = 255;
+      var conflict = (nx, modbus) => {
+        const { station } = modbus;
+        if (nx.station === ONLY_PLC) return `NX station ${ONLY_PLC} answers to every number`;
+        if (nx.station === 0) return "NX station 0 is the broadcast of MODBUS";
+        if (station === 0) return "a MODBUS broadcast reaches the NX PLCs too";
+        if (nx.station === station) return `both are station ${station}`;
+        if ((nx.masterIds ?? []).includes(station)) {
+          return `the NX configuration sends as master ID ${station}, which is the number of the regulator`;
+        }
+        return "";
+      };
+      var mixedConflict = (one, other) => {
+        if (one.protocol === other.protocol) return "";
+        return one.protocol === "nx" ? conflict(one, other) : conflict(other, one);
+      };
+      module.exports = { mixedConflict };
+    }
+  });
+
+  // lib/codec/nx/ids.js
+  var require_ids = __commonJS({
+    "lib/codec/nx/ids.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var LEAST_FREE = 192;
+      var LAST = 254;
+      var DEFAULT_IDS = Object.freeze([226, 227, 228, 229, 230, 231, 232, 233]);
+      function masterIdList(value, { stations = [] } = {}) {
+        if (value === void 0 || value === null || value === "") return DEFAULT_IDS;
+        const given = Array.isArray(value) ? value : typeof value === "string" ? value.split(",").flatMap(expand) : [value];
+        if (given.length < 1 || given.length > LAST + 1) throw bad(value, "give 1 to 63 numbers");
+        const ids = [...new Set(given)];
+        for (const id of ids) checkId(id, stations);
+        return Object.freeze(ids);
+      }
+      function checkId(id, stations) {
+        if (!Number.isInteger(id) || id < 0 || id > LAST) throw bad(id, "it must be a whole number from 0 to 254");
+        if (id >= LEAST_FREE) return;
+        if (stations.includes(id)) throw bad(id, "a station of this line has this number");
+        if (stations.includes(255)) throw bad(id, "with station 255 the number of the PLC is not known");
+      }
+      function expand(text) {
+        const ends = text.split("..").map((part) => {
+          const clean = part.trim().replace(/^\$/, "0x");
+          if (!/^(0x[0-9a-f]{1,2}|\d{1,3})$/i.test(clean)) throw bad(text.trim(), "it is not a number");
+          return Number(clean);
+        });
+        const [first, last = first] = ends;
+        if (ends.length > 2 || last < first || last > 255) throw bad(text.trim(), "it is not a range");
+        return Array.from({ length: last - first + 1 }, (_, i) => first + i);
+      }
+      var bad = (id, reason) => new PlcError("BAD_MASTER_ID", { id: String(id), reason });
+      function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
+        if (!Array.isArray(memory.resting)) memory.resting = [];
+        const resting = memory.resting;
+        const first = Math.abs(Math.trunc(start)) % ids.length || 0;
+        const following = () => {
+          const remembered = ids.indexOf(memory.last ?? -1);
+          return remembered >= 0 ? (remembered + 1) % ids.length : first;
+        };
+        const free = (id) => {
+          const at = id === void 0 ? -1 : resting.indexOf(id);
+          if (id === void 0) resting.length = 0;
+          else if (at >= 0) resting.splice(at, 1);
+        };
+        return {
+          /** @returns {number} the ID of the next query */
+          take() {
+            let next = following();
+            let tries = ids.length;
+            while (tries-- > 0 && resting.includes(ids[next])) next = (next + 1) % ids.length;
+            const oldest = resting.find((id2) => ids.includes(id2));
+            const id = tries < 0 && oldest !== void 0 ? oldest : ids[next];
+            memory.last = id;
+            return id;
+          },
+          /** The exchange of this ID ended with an answer. @param {number} id */
+          ok: (id) => free(id),
+          /** It did not: an answer may still come. @param {number} id */
+          failed(id) {
+            free(id);
+            if (ids.length > 1) resting.push(id);
+          },
+          /** No answer can come any more: to this ID, or to any. @param {number} [id] */
+          free,
+          /** @returns {number[]} IDs to which an answer may still come */
+          resting: () => [...resting],
+          ids
+        };
+      }
+      module.exports = { DEFAULT_IDS, masterIdList, masterIds };
+    }
+  });
+
+  // lib/codec/crc16.js
+  var require_crc16 = __commonJS({
+    "lib/codec/crc16.js"(exports, module) {
+      "use strict";
+      var POLYNOMIAL = 40961;
+      var START = 65535;
+      var TABLE = Uint16Array.from({ length: 256 }, (_, byte) => {
+        let crc = byte;
+        for (let bit = 0; bit < 8; bit++) crc = crc & 1 ? crc >>> 1 ^ POLYNOMIAL : crc >>> 1;
+        return crc;
+      });
+      function crc16(bytes, start = 0, end = bytes.length) {
+        let crc = START;
+        for (let i = start; i < end; i++) crc = crc >>> 8 ^ TABLE[(crc ^ bytes[i]) & 255];
+        return crc;
+      }
+      module.exports = { crc16 };
+    }
+  });
+
+  // lib/codec/nx/frame.js
+  var require_frame = __commonJS({
+    "lib/codec/nx/frame.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { crc16 } = require_crc16();
+      var HEADER = 4;
+      var OVERHEAD = 6;
+      var MOST_INFO = 256;
+      var SHORTEST = OVERHEAD + 1;
+      var LONGEST = OVERHEAD + MOST_INFO;
+      function encodeFrame({ to, from, fn, info }) {
+        byte("to", to);
+        byte("from", from);
+        byte("fn", fn);
+        const length = info.length;
+        if (!(length >= 1))
+          throw new PlcError("BAD_SETTING", { setting: "info", value: "empty", reason: "LEN 0 means 256 bytes" });
+        if (length > MOST_INFO) throw new PlcError("FRAME_TOO_LONG", { what: "INFO", got: length, most: MOST_INFO });
+        const bytes = Buffer.allocUnsafe(length + OVERHEAD);
+        bytes[0] = to;
+        bytes[1] = from;
+        bytes[2] = fn;
+        bytes[3] = length & 255;
+        bytes.set(info, HEADER);
+        bytes.writeUInt16LE(crc16(bytes, 0, length + HEADER), length + HEADER);
+        return bytes;
+      }
+      function byte(setting, value) {
+        if (!Number.isInteger(value) || value < 0 || value > 255) {
+          throw new PlcError("BAD_SETTING", { setting, value, reason: "it must be a byte, 0 to 255" });
+        }
+      }
+      function frameLength(bytes, start = 0) {
+        return bytes.length - start < HEADER ? 0 : (bytes[start + 3] || MOST_INFO) + OVERHEAD;
+      }
+      function crcFits(bytes, start, length) {
+        const end = start + length - 2;
+        return crc16(bytes, start, end) === (bytes[end] | bytes[end + 1] << 8);
+      }
+      function decodeFrame(bytes, start = 0) {
+        const length = frameLength(bytes, start);
+        return length > 0 && bytes.length - start >= length && crcFits(bytes, start, length) ? openFrame(bytes, start) : null;
+      }
+      function openFrame(bytes, start = 0) {
+        const length = frameLength(bytes, start);
+        const info = Buffer.from(bytes.buffer, bytes.byteOffset + start + HEADER, length - OVERHEAD);
+        return { to: bytes[start], from: bytes[start + 1], fn: bytes[start + 2], info, length };
+      }
+      module.exports = {
+        SHORTEST,
+        LONGEST,
+        MOST_INFO,
+        HEADER,
+        OVERHEAD,
+        encodeFrame,
+        frameLength,
+        crcFits,
+        decodeFrame,
+        openFrame
+      };
+    }
+  });
+
+  // lib/codec/nx/limits.js
+  var require_limits = __commonJS({
+    "lib/codec/nx/limits.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { functionOf } = require_functions();
+      var { MOST_INFO } = require_frame();
+      var LIMITS = Object.freeze({
+        readBits: 255,
+        writeBits: 254,
+        readWords: 128,
+        writeWords: 64,
+        readMixed: 128,
+        writeMixed: 85,
+        info: MOST_INFO
+      });
+      var LAST_MIXED = 16383;
+      var LAST = 65535;
+      function limitsOf(settings = {}) {
+        const limits = { ...LIMITS };
+        for (const [name, given] of Object.entries(settings)) {
+          if (given === void 0) continue;
+          if (!Object.hasOwn(LIMITS, name)) {
+            throw new PlcError("BAD_SETTING", { setting: `limits.${name}`, value: given, reason: "there is no such limit" });
+          }
+          const least = name === "info" ? 3 : 1;
+          const most = name === "info" ? MOST_INFO : functionOf(name).most;
+          const value = typeof given === "string" && /^\s*\d{1,3}\s*$/.test(given) ? Number(given) : given;
+          if (!Number.isInteger(value) || value < least || value > most) {
+            throw new PlcError("BAD_SETTING", {
+              setting: `limits.${name}`,
+              value: given,
+              reason: `it must be ${least} to ${most}`
+            });
+          }
+          limits[name] = value;
+        }
+        return Object.freeze(limits);
+      }
+      function check(query, limits = LIMITS) {
+        const row = functionOf(query?.ask);
+        CHECKS[row.name](query, row, limits);
+        return row;
+      }
+      var CHECKS = {
+        readBits: checkBlock,
+        readWords: checkBlock,
+        writeBits: (query, row, limits) => checkBlockWrite("bit", query, { row, limits }),
+        writeWords: (query, row, limits) => checkBlockWrite("word", query, { row, limits }),
+        readMixed({ addresses }, row, limits) {
+          const list = listOf(addresses, row, limits);
+          list.forEach(checkPlace);
+          const bytes = list.reduce((sum, { kind }) => sum + (kind === "bit" ? 1 : 2), 0);
+          checkBytes(Math.max(bytes, list.length * 2), limits);
+        },
+        writeMixed({ writes }, row, limits) {
+          const list = listOf(writes, row, limits);
+          list.forEach(checkPlace);
+          list.forEach(({ kind, address, value }) => checkValue(kind, address, value));
+          const bytes = list.reduce((sum, { kind }) => sum + (kind === "bit" ? 3 : 4), 0);
+          checkBytes(bytes, limits);
+        }
+      };
+      function checkBlockWrite(kind, { base, values }, { row, limits }) {
+        const list = listOf(values, row, limits);
+        checkBlock({ base, count: list.length }, row, limits);
+        list.forEach((value, i) => checkValue(kind, base + i, value));
+      }
+      function checkBlock({ base, count }, row, limits) {
+        checkCount(count, row, limits);
+        const kind = row.unit === "bits" ? "bit" : "word";
+        if (!whole(base, LAST)) throw badAddress(base, `the last ${kind} address is ${LAST}`);
+        if (base + count - 1 > LAST)
+          throw badAddress(base, `${count} ${row.unit} from there end after the last address ${LAST}`);
+        const size = kind === "bit" ? count : count * 2;
+        checkBytes(row.repeatable ? Math.max(size, 3) : size + 2, limits);
+      }
+      function checkCount(count, row, limits) {
+        const most = limits[row.name];
+        if (whole(count, most) && count >= 1) return;
+        const reason = count === 0 ? "there is nothing to ask for" : whole(count, Infinity) ? "too many for one frame" : "no count";
+        throw new PlcError("BAD_COUNT", { count, unit: row.unit, reason, least: 1, most });
+      }
+      function checkBytes(got, limits) {
+        if (got > limits.info)
+          throw new PlcError("FRAME_TOO_LONG", { what: "the query or its answer", got, most: limits.info });
+      }
+      function checkPlace(place) {
+        const kind = place?.kind;
+        if (kind !== "bit" && kind !== "word") throw badAddress(place?.address, "it must be a bit or a word");
+        if (!whole(place.address, LAST_MIXED))
+          throw badAddress(place.address, `in mixed frames the last ${kind} address is ${LAST_MIXED}`);
+      }
+      function checkValue(kind, address, value) {
+        if (kind === "bit" ? typeof value === "boolean" : whole(value, 65535)) return;
+        const reason = kind === "bit" ? "a bit is true or false" : "a word is a whole number from 0 to 65535";
+        throw new PlcError("BAD_VALUE", { item: `${kind} ${hex(address)}`, value: String(value), reason });
+      }
+      function listOf(list, row, limits) {
+        if (Array.isArray(list)) {
+          checkCount(list.length, row, limits);
+          return Array.from(list);
+        }
+        const reason = "they are not given as a list";
+        throw new PlcError("BAD_COUNT", { count: "no", unit: row.unit, reason, least: 1, most: limits[row.name] });
+      }
+      var whole = (value, most) => Number.isInteger(value) && value >= 0 && value <= most;
+      var hex = (value) => `${value.toString(16).toUpperCase().padStart(4, "0")}h`;
+      var badAddress = (address, reason) => new PlcError("BAD_ADDRESS", { address: String(address), reason });
+      module.exports = { LIMITS, limitsOf, check };
     }
   });
 
@@ -2002,7 +2549,7 @@ var nxlineSerialPlc = (() => {
       var { masterIdList } = require_ids();
       var { limitsOf } = require_limits();
       var { nxNotation } = require_nx_notation();
-      var { describeAddress } = require_address();
+      var { describeAddress } = require_address2();
       var { planReads, planWrites } = require_plan();
       var { choice, isOn, nameOf, readRanges, wholeNumber } = require_options();
       var LAST_STATION = 191;
@@ -2086,397 +2633,12 @@ var nxlineSerialPlc = (() => {
     }
   });
 
-  // lib/codec/modbus/functions.js
-  var require_functions2 = __commonJS({
-    "lib/codec/modbus/functions.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var FUNCTIONS = table([
-        // fn  table  unit    request      most  answer  reads
-        [1, "co", "bits", "block", 2e3, "bits", true],
-        [2, "di", "bits", "block", 2e3, "bits", true],
-        [3, "hr", "words", "block", 125, "words", true],
-        [4, "ir", "words", "block", 125, "words", true],
-        [5, "co", "bits", "single", 1, "echo", false],
-        [6, "hr", "words", "single", 1, "echo", false],
-        [15, "co", "bits", "multiple", 1968, "echo", false],
-        [16, "hr", "words", "multiple", 123, "echo", false]
-      ]);
-      function table(rows) {
-        return Object.freeze(
-          rows.map(
-            ([fn, name, unit, request, most, answer, reads]) => Object.freeze({ fn, table: name, unit, request, most, answer, reads })
-          )
-        );
-      }
-      var EXCEPTION = 128;
-      var byNumber = new Map(FUNCTIONS.map((row) => [row.fn, row]));
-      var find = (name, request) => (
-        /** @type {FunctionRow} */
-        FUNCTIONS.find((row) => row.table === name && row.request === request) ?? null
-      );
-      function functionOf(fn) {
-        const row = byNumber.get(
-          /** @type {number} */
-          fn
-        );
-        if (!row) throw new PlcError("FUNCTION_REFUSED", { function: String(fn) });
-        return row;
-      }
-      var functionByNumber = (fn) => byNumber.get(fn);
-      var readFunction = (name) => find(name, "block").fn;
-      var writeFunction = (name, { single }) => find(name, single ? "single" : "multiple")?.fn ?? null;
-      module.exports = { EXCEPTION, FUNCTIONS, functionByNumber, functionOf, readFunction, writeFunction };
-    }
-  });
-
-  // lib/codec/modbus/address.js
-  var require_address2 = __commonJS({
-    "lib/codec/modbus/address.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var { readFunction, writeFunction } = require_functions2();
-      var SIZE = 65536;
-      var MOST_CHARACTERS = 64;
-      var MOST_RANGE = 4096;
-      var TABLES = Object.freeze(
-        /** @type {[TableName, string, 'bit'|'word', string, number, boolean][]} */
-        [
-          ["co", "coil", "bit", "0", 2097152, true],
-          ["di", "discrete input", "bit", "1", 2162688, false],
-          ["ir", "input register", "word", "3", 65536, false],
-          ["hr", "holding register", "word", "4", 0, true]
-        ].map(
-          ([table, name, kind, digit, base, writable]) => Object.freeze({ table, name, kind, digit, base, writable, size: SIZE })
-        )
-      );
-      var byDigit = new Map(TABLES.map((row) => [row.digit, row]));
-      var byName = new Map(TABLES.map((row) => [row.table, row]));
-      var PANEL = /^(\d+)(?:\.(\d*))?$/;
-      var EXPLICIT = /^(co|di|ir|hr)(\d+)(?:\.(\d*))?$/;
-      var rowOf = (table) => (
-        /** @type {any} */
-        byName.get(
-          /** @type {TableName} */
-          table
-        )
-      );
-      function parseAddress(text, { addressMode = "1-base" } = {}) {
-        if (typeof text === "number") throw bad(text, 'a number loses its zeros; write the address in quotes, as in "010197"');
-        if (typeof text !== "string") throw bad("", "it is not text");
-        const clean = text.trim();
-        if (clean === "") throw bad(text, "it is empty", { why: "empty" });
-        if (clean.length > MOST_CHARACTERS)
-          throw bad(`${clean.slice(0, 20)}…`, `it has more than ${MOST_CHARACTERS} characters`);
-        const [first, last, more] = clean.split(/\s*\.\.\s*/);
-        if (more !== void 0) throw bad(clean, "a range has two ends");
-        const from = parseOne(first, clean, addressMode);
-        if (last === void 0) return finish(from, 1, addressMode);
-        return range(from, parseOne(last, clean, addressMode), { clean, addressMode });
-      }
-      function range(from, to, { clean, addressMode }) {
-        if (from.row !== to.row) throw bad(clean, `one end is of the ${from.row.name}s, the other of the ${to.row.name}s`);
-        if (from.kind !== to.kind) throw bad(clean, "one end is a bit, the other a register");
-        if (from.style !== to.style) throw bad(clean, "both ends must be written in the same way");
-        const count = to.address - from.address + 1;
-        if (count < 1) throw bad(clean, "the range runs backwards", { why: "backwards" });
-        if (count > MOST_RANGE) {
-          const reason = "the range is too long";
-          throw new PlcError("BAD_COUNT", { count, unit: `${from.kind}s`, reason, least: 1, most: MOST_RANGE });
-        }
-        return finish(from, count, addressMode);
-      }
-      var FORMS = "like 400108, 40108 or hr107";
-      function parseOne(part, whole, addressMode) {
-        const clean = part.trim().toLowerCase();
-        const explicit = EXPLICIT.exec(clean);
-        if (explicit) {
-          const [, name, digits2, bit2] = explicit;
-          return place(rowOf(name), Number(digits2), { bit: bit2, whole, style: "explicit", first: 0 });
-        }
-        const found = PANEL.exec(clean);
-        if (!found)
-          throw part === "" ? bad(whole, "one end of the range is missing") : bad(whole, `it is not ${FORMS}`, { why: "form" });
-        const [, digits, bit] = found;
-        if (digits.length !== 5 && digits.length !== 6) throw wrongDigits(whole, digits);
-        const row = byDigit.get(digits[0]);
-        if (!row)
-          throw bad(
-            whole,
-            `the first digit is ${digits[0]}, not 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)`,
-            { why: "firstDigit", digit: digits[0] }
-          );
-        return place(row, Number(digits.slice(1)), { bit, whole, style: "panel", first: addressMode === "0-base" ? 0 : 1 });
-      }
-      var wrongDigits = (whole, digits) => {
-        const { length } = digits;
-        const reason = `it has ${length === 1 ? "1 digit" : `${length} digits`} instead of 6 or 5`;
-        if (length > 5) return bad(whole, reason, { why: "digits", digits: length });
-        const padded = digits.padStart(6, "0");
-        const hint = `; a zero in front may have been lost, as in ${padded}`;
-        return bad(whole, reason + hint, { why: "zeroLost", digits: length, padded });
-      };
-      function place(row, number, { bit, whole, style, first }) {
-        const wire = number - first;
-        if (!(wire >= 0 && wire < SIZE)) {
-          const numbers = `${first}..${SIZE - 1 + first}`;
-          throw new PlcError("OUT_OF_AREA", {
-            address: whole,
-            area: `the table of ${row.name}s`,
-            range: `the numbers ${numbers}`,
-            notation: "modbus",
-            numbers
-          });
-        }
-        if (bit === void 0) return { kind: row.kind, address: row.base + wire, row, style };
-        if (row.kind === "bit") throw bad(whole, `a ${row.name} is a bit: nothing follows its number`, { why: "bitOfBit" });
-        return { kind: "bit", address: (row.base + wire) * 16 + bitOf(bit, whole), row, style };
-      }
-      function bitOf(digits, whole) {
-        if (digits.length !== 2) {
-          const hint = digits.length === 1 ? `: .${digits} could be .0${digits} or .${digits}0` : "";
-          throw bad(whole, `a bit of a register has two digits, .00 to .15${hint}`, { why: "bitDigits" });
-        }
-        if (Number(digits) > 15) throw new PlcError("BAD_BIT", { address: whole, bit: Number(digits) });
-        return Number(digits);
-      }
-      function finish({ kind, address, row, style }, count, addressMode) {
-        const through = kind === "bit" && row.kind === "word";
-        const result = {
-          kind,
-          address,
-          count,
-          table: row.table,
-          wire: placeOf(kind, address).wire,
-          text: formatAddress({ kind, address, count, style }, { addressMode }),
-          style,
-          writable: row.writable,
-          certainty: "certain"
-        };
-        if (through) result.throughWord = { address: address >> 4, bit: address & 15, writable: row.writable };
-        return result;
-      }
-      function placeOf(kind, address) {
-        const at = (name, number) => TABLES.find((row) => row.kind === name && number >= row.base && number < row.base + SIZE);
-        const own = Number.isInteger(address) ? at(kind, address) : void 0;
-        if (own) return { table: own.table, wire: address - own.base };
-        const word = kind === "bit" && Number.isInteger(address) && address >= 0 ? at("word", address >> 4) : void 0;
-        if (word) return { table: word.table, wire: (address >> 4) - word.base, bit: address & 15 };
-        throw bad(String(address), `no ${kind} has this absolute address`);
-      }
-      function formatAddress({ kind, address, count = 1, style = "panel" }, { addressMode = "1-base" } = {}) {
-        const one = (at) => {
-          const { table, wire, bit } = placeOf(kind, at);
-          const tail = bit === void 0 ? "" : `.${String(bit).padStart(2, "0")}`;
-          if (style === "explicit") return `${table}${wire}${tail}`;
-          const number = addressMode === "0-base" ? wire : wire + 1;
-          return `${rowOf(table).digit}${String(number).padStart(5, "0")}${tail}`;
-        };
-        return count === 1 ? one(address) : `${one(address)}..${one(address + count - 1)}`;
-      }
-      function describeAddress({ kind, address, count = 1 }, options = {}) {
-        const first = placeOf(kind, address);
-        const last = placeOf(kind, address + count - 1);
-        const row = rowOf(first.table);
-        const span = spanOf(first.wire, last.wire);
-        const read = hex(readFunction(first.table), 2);
-        if (options.write && !row.writable) return `${row.name}s cannot be written`;
-        const code = options.write ? writeCode(first.table, last.wire - first.wire + 1, options) : read;
-        if (first.bit === void 0) return `function ${code}, ${span}`;
-        if (options.write) return `functions ${read} and ${code}, read-modify-write of ${span}`;
-        return `function ${code}, ${span}, ${count === 1 ? `bit ${first.bit}` : `${count} bits`}`;
-      }
-      function writeCode(table, count, { coilFunction = "0F", holdingFunction = "10" }) {
-        const chosen = table === "co" ? coilFunction : holdingFunction;
-        const single = chosen === "05" || chosen === "06" || chosen === "auto" && count === 1;
-        return hex(
-          /** @type {number} */
-          writeFunction(table, { single }),
-          2
-        );
-      }
-      var spanOf = (first, last) => first === last ? `wire address ${first} (${hex(first)}h)` : `wire addresses ${first}–${last} (${hex(first)}h–${hex(last)}h)`;
-      var hex = (value, digits = 4) => value.toString(16).toUpperCase().padStart(digits, "0");
-      var bad = (address, reason, more = {}) => new PlcError("BAD_ADDRESS", { address: String(address), reason, notation: "modbus", ...more });
-      module.exports = { TABLES, describeAddress, formatAddress, parseAddress, placeOf, spanOf };
-    }
-  });
-
-  // lib/tag/modbus-notation.js
-  var require_modbus_notation = __commonJS({
-    "lib/tag/modbus-notation.js"(exports, module) {
-      "use strict";
-      var { PlcError } = require_error();
-      var { formatAddress, parseAddress, placeOf, TABLES } = require_address2();
-      var { readTags } = require_tags();
-      var MODES = ["1-base", "0-base"];
-      var lastOf = ({ kind, address }) => {
-        const { table, bit } = placeOf(kind, address);
-        const row = (
-          /** @type {any} */
-          TABLES.find((each) => each.table === table)
-        );
-        const last = row.base + row.size - 1;
-        return bit === void 0 ? last : last * 16 + 15;
-      };
-      var DIGITS = /^\d+$/;
-      var BIT_OF_REGISTER = /^\d{5,6}\.\d$/;
-      var LAST_NUMBER = 65536;
-      var doubtOf = (text, isBit) => {
-        if (BIT_OF_REGISTER.test(text)) return `${text} may have been ${text}0: a bit has two digits`;
-        if (!DIGITS.test(text)) return "";
-        if (isBit && /^(3|4)(\d{4}|\d{5})$/.test(text)) return `${text} is a register; it may have been the bit ${text}.00`;
-        if (text.length < 5) return `${text} may have been ${text.padStart(6, "0")}: it has too few digits`;
-        const eaten = text.length === 5 && text[0] !== "0" && Number(text) <= LAST_NUMBER;
-        return eaten ? `${text} may have been 0${text}, a coil: write six digits to be sure` : "";
-      };
-      var doubtsOf = (row) => {
-        const [address, type = ""] = String(row.address ?? "").split(":");
-        const isBit = [type, row.type].some((each) => /^\s*bool\s*$/i.test(String(each ?? "")));
-        const doubts = address.split("..").map((end) => doubtOf(end.trim(), isBit));
-        return [...new Set(doubts.filter(Boolean))];
-      };
-      var modbusNotation = ({ addressMode = "1-base", tags, wordOrder = "low", byteOrder = "high" } = {}) => {
-        if (!MODES.includes(addressMode)) {
-          const reason = `it must be ${MODES.join(" or ")}`;
-          throw new PlcError("BAD_SETTING", { setting: "addressMode", value: addressMode, reason });
-        }
-        const notation = {
-          addressMode,
-          example: "400108",
-          parse: (text) => parseAddress(text, { addressMode }),
-          format: (at) => formatAddress(at, { addressMode }),
-          last: lastOf,
-          packs: (address) => address.kind === "bit" && !address.throughWord,
-          doubts: doubtsOf,
-          wordOrder,
-          byteOrder
-        };
-        return { ...notation, tags: readTags(tags, notation) };
-      };
-      module.exports = { modbusNotation };
-    }
-  });
-
-  // scripts/editor/model.js
-  var require_model = __commonJS({
-    "scripts/editor/model.js"(exports, module) {
-      "use strict";
-      var { functionOf, queryCode } = require_functions();
-      var { TABLES, placeOf } = require_address2();
-      var { readFunction, writeFunction } = require_functions2();
-      var { parseItem } = require_item();
-      var { modbusNotation } = require_modbus_notation();
-      var { nxNotation } = require_nx_notation();
-      var { t } = require_texts();
-      var attempt = (make, otherwise) => {
-        try {
-          return make();
-        } catch {
-          return otherwise;
-        }
-      };
-      var hex = (value, digits) => value.toString(16).toUpperCase().padStart(digits, "0");
-      var unitOf = (item, bits) => {
-        const number = item.kind === "word" ? item.count * item.type.words : item.count;
-        if (item.throughWord) return t("editor.through");
-        if (number === 1) return t(bits ? "editor.bit" : "editor.word");
-        return t(bits ? "editor.bits" : "editor.words", { number });
-      };
-      var describeNx = (item, { steps = 2 }, write) => {
-        const bits = item.kind === "bit" && !item.throughWord;
-        const row = functionOf((write ? "write" : "read") + (bits ? "Bits" : "Words"));
-        const code = hex(queryCode(row, String(steps) === "4" ? 4 : 2), 2);
-        const address = hex(item.throughWord ? Math.floor(item.address / 16) : item.address, 4);
-        return t("editor.goesOut", { code, address, what: unitOf(item, bits) });
-      };
-      var lengthOf = ({ kind, count, type, packed }) => count * (kind === "word" || packed ? type.words : 1) * (packed ? 16 : 1);
-      var SINGLE = { "05": () => true, "06": () => true, auto: (count) => count === 1 };
-      var writeCode = (table, count, { coilFunction = "0F", holdingFunction = "10" }) => {
-        const chosen = table === "co" ? coilFunction : holdingFunction;
-        const single = SINGLE[chosen] ? SINGLE[chosen](count) : false;
-        return hex(writeFunction(table, { single }), 2);
-      };
-      var whereOf = (first, last) => {
-        const values = { first, last, firstHex: hex(first, 4), lastHex: hex(last, 4) };
-        return t(first === last ? "editor.wire" : "editor.wires", values);
-      };
-      var isWritable = (table) => TABLES.find((row) => row.table === table).writable;
-      var canOnlyBeRead = (item, { type }) => type === "chino-config" && !isWritable(placeOf(item.kind, item.address).table);
-      var describeModbus = (item, device, write) => {
-        const length = lengthOf(item);
-        const { table, wire, bit } = placeOf(item.kind, item.address);
-        const last = placeOf(item.kind, item.address + length - 1).wire;
-        const where = whereOf(wire, last);
-        const read = hex(readFunction(table), 2);
-        if (write && !isWritable(table)) return t("editor.readable");
-        const code = write ? writeCode(table, last - wire + 1, device) : read;
-        if (bit === void 0) return t("editor.sent", { code, where });
-        if (write) return t("editor.changed", { read, code, where });
-        const bits = length === 1 ? t("editor.oneBit", { number: bit }) : t("editor.severalBits", { number: length });
-        return `${t("editor.sent", { code, where })}, ${bits}`;
-      };
-      var oneOf = (value, known) => known.includes(value) ? value : known[0];
-      var DEVICES = {
-        "nx-config": {
-          label: "editor.station",
-          notation: ({ areas }, tags) => nxNotation({ areas: areas || [], tags }),
-          // faulty area rows count as none
-          usable: (device) => ({ areas: attempt(() => nxNotation({ areas: device.areas || [] }) && device.areas, []) || [] }),
-          describe: describeNx
-        },
-        "chino-config": {
-          label: "editor.regulator",
-          notation: ({ addressMode, wordOrder }, tags) => modbusNotation({
-            addressMode: oneOf(addressMode, ["1-base", "0-base"]),
-            wordOrder: oneOf(wordOrder, ["low", "high"]),
-            tags
-          }),
-          usable: (device) => device,
-          describe: describeModbus
-        }
-      };
-      var TYPES = Object.keys(DEVICES);
-      var kindOf = (device) => DEVICES[device && device.type || "nx-config"] || DEVICES["nx-config"];
-      var notationOf = (device) => kindOf(device).notation(device || {});
-      var usableTags = (notation, device, tags) => {
-        const names = /* @__PURE__ */ new Set();
-        return tags.filter((row) => {
-          const [name] = attempt(() => [...notation(device, [row]).tags.keys()], []);
-          return name !== void 0 && !names.has(name) && names.add(name);
-        });
-      };
-      var notationWithTags = (device) => {
-        const { notation, usable } = kindOf(device);
-        const own = usable(device || {});
-        const tags = device && device.tags || [];
-        return attempt(() => notation(own, tags), null) || notation(own, usableTags(notation, own, Array.isArray(tags) ? tags : []));
-      };
-      var deviceLabel = (device) => t(kindOf(device).label, { station: device.station === "" ? "?" : device.station });
-      var deviceName = (device) => device.name || deviceLabel(device);
-      var describe = (item, device, { write = false } = {}) => kindOf(device).describe(item, device || {}, write);
-      var unsure = (item, notation) => attempt(() => notation.parse(item.addressText).certainty === "unconfirmed", false);
-      module.exports = {
-        TYPES,
-        notationOf,
-        notationWithTags,
-        deviceLabel,
-        deviceName,
-        describe,
-        unsure,
-        parseItem,
-        attempt,
-        canOnlyBeRead,
-        hex
-      };
-    }
-  });
-
   // scripts/editor/check.js
   var require_check = __commonJS({
     "scripts/editor/check.js"(exports, module) {
       "use strict";
       var { PROPERTIES, readProperty, allowed, applies } = require_properties();
+      var { lineOfListener, listenerOf } = require_line_use();
       var { t, errorText } = require_texts();
       var { truthy } = require_widgets();
       var { readRanges } = require_options();
@@ -2513,6 +2675,8 @@ var nxlineSerialPlc = (() => {
       });
       var checkNumber = (type) => (node, station) => {
         const own = memberOf({ type, station, masterIds: current(node, "masterIds") });
+        const listener = listenerOf(current(node, "line"));
+        if (listener) return t("problem.listened", { other: listener });
         for (const other of neighbours(node)) {
           const name = deviceName(other);
           if (String(other.station) === String(station).trim()) return t("problem.sameStation", { other: name });
@@ -2548,6 +2712,10 @@ var nxlineSerialPlc = (() => {
         const { addressMode, wordOrder } = view(node);
         return { type: "chino-config", addressMode, wordOrder };
       };
+      var checkEnd = (node, value) => Boolean(`${value}${current(node, "last") ?? ""}`.trim()) || t("problem.needsEnd");
+      var checkCount = (_node, value) => Number(value) > 0 || t("problem.needsCount");
+      var checkGap = (node, value) => truthy(current(node, "bidirectional")) || current(node, "framing") !== "gap" || Number(value) > 0 || t("problem.needsGap");
+      var checkFlow = (node, value) => value !== "dc" || !truthy(current(node, "bidirectional")) || t("problem.noDc");
       var MORE = {
         "nx-config": {
           station: checkPlcNumber,
@@ -2586,7 +2754,15 @@ var nxlineSerialPlc = (() => {
           verify: (node, value) => !truthy(value) || !isBroadcast(node) || t("problem.broadcastMode"),
           items: checkItems("regulator", "chino-config"),
           target: checkTarget("regulator")
-        }
+        },
+        "melsec-c24": {
+          line: (node) => lineOfListener(node, (name) => current(node, name)),
+          end: checkEnd,
+          count: checkCount,
+          gap: checkGap,
+          flow: checkFlow
+        },
+        "incon-link": { line: (node) => lineOfListener(node, (name) => current(node, name)) }
       };
       var isEmpty = (value) => value === void 0 || value === null || value === "";
       var verdict = (type, { name, node, value }) => {
@@ -2596,7 +2772,7 @@ var nxlineSerialPlc = (() => {
         if (problem)
           return t(`problem.${problem}`, { allowed: allowed(row).replace(/^(\d+) to (\d+)/, `$1${t("editor.to")}$2`) });
         const more = MORE[type] && MORE[type][name];
-        return more && (row.kind === "list" || !isEmpty(value)) ? more(node, value) : true;
+        return more && (row.kind === "list" || row.blank || !isEmpty(value)) ? more(node, value) : true;
       };
       var check = (type, name) => (
         // two declared parameters tell the editor that a reason may come as a text
@@ -3514,6 +3690,81 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // scripts/editor/listener.js
+  var require_listener = __commonJS({
+    "scripts/editor/listener.js"(exports, module) {
+      "use strict";
+      var { done, open } = require_check();
+      var { fillDefaults, say, tabs } = require_widgets();
+      var { t } = require_texts();
+      var PREFIX = "node-input-";
+      var field = (name) => $(`#${PREFIX}${name}`);
+      var value = (name) => field(name).val();
+      var isTicked = (name) => field(name).prop("checked");
+      var PAGES = {
+        messages: "tab.messages",
+        sending: "tab.sending",
+        details: "tab.details"
+      };
+      var NAMES = { "0D": "CR", "0A": "LF", "02": "STX", "03": "ETX", "04": "EOT", 10: "DLE", "00": "NUL" };
+      var bytesByName = (text) => (String(text).toUpperCase().match(/[0-9A-F]{2}/g) || []).map((byte) => NAMES[byte] || `${byte}h`).join(" ");
+      var noteEnd = () => {
+        const name = bytesByName(value("end"));
+        say($("#nxline-c24-end"), name ? t("editor.ends", { name }) : t("editor.noEnd"), !name && !value("last"));
+      };
+      var showC24 = () => {
+        const twoWay = isTicked("bidirectional");
+        const framing = value("framing");
+        $(".nxline-two-way").toggle(twoWay);
+        $(".nxline-free").toggle(!twoWay);
+        $("#nxline-c24-gap").text(t(twoWay ? "editor.gapAuto" : framing === "gap" ? "editor.gapEnds" : "editor.gapTorn"));
+        for (const each of ["end", "count"]) $(`.nxline-framing-${each}`).toggle(!twoWay && framing === each);
+        $(".nxline-text").toggle(value("format") === "text");
+        $(".nxline-words").toggle(value("format") === "words" || twoWay);
+        $(".nxline-dc").toggle(value("flow") === "dc");
+        $(".nxline-driver").toggle(value("flow") === "driver");
+        $(".nxline-held").toggle(value("flow") !== "none");
+      };
+      var showLink = () => $(".nxline-checked").toggle(isTicked("checked"));
+      var SHOW = { "melsec-c24": showC24, "incon-link": showLink };
+      var showAccess = () => {
+        const sends = value("access") !== "read";
+        if (!sends) $(".nxline-sends").hide();
+        else $(".nxline-sends").not(".nxline-free, .nxline-two-way").show();
+        $(".nxline-silent").toggle(!sends);
+      };
+      var COUNTS = ["end", "count", "gap", "flow"];
+      var editListener = (node) => {
+        const { type } = node;
+        open(node, PREFIX);
+        fillDefaults(node, PREFIX);
+        const show = () => {
+          SHOW[type]();
+          showAccess();
+        };
+        for (const name of ["bidirectional", "framing", "format", "flow", "checked", "access"]) field(name).on("change", show);
+        for (const name of ["bidirectional", "framing"])
+          field(name).on("change", () => COUNTS.forEach((each) => field(each).trigger("change")));
+        if (type === "melsec-c24") {
+          $("#node-input-end, #node-input-last").on("input change", noteEnd);
+          noteEnd();
+        }
+        const pages = Object.keys(PAGES).filter((page) => $(`#nxline-${type}-${page}`).length > 0);
+        tabs(
+          `nxline-${type}-tabs`,
+          pages.map((page) => [`nxline-${type}-${page}`, t(PAGES[page])])
+        );
+        show();
+      };
+      var saveListener = (node) => {
+        const sends = value("access") !== "read";
+        node.outputs = sends ? 2 + (value("onFailure") === "output" ? 1 : 0) : 1;
+        done();
+      };
+      module.exports = { bytesByName, editListener, saveListener };
+    }
+  });
+
   // scripts/editor/index.js
   var require_index = __commonJS({
     "scripts/editor/index.js"(exports, module) {
@@ -3523,7 +3774,9 @@ var nxlineSerialPlc = (() => {
         ...require_line(),
         ...require_plc(),
         ...require_regulator(),
-        ...require_flow()
+        ...require_flow(),
+        editListener: require_listener().editListener,
+        saveListener: require_listener().saveListener
       };
     }
   });

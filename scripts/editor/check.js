@@ -1,5 +1,6 @@
 'use strict'
 const { PROPERTIES, readProperty, allowed, applies } = require('../../nodes/properties')
+const { lineOfListener, listenerOf } = require('./line-use')
 const { t, errorText } = require('./texts')
 const { truthy } = require('./widgets')
 const { readRanges } = require('../../lib/device/options')
@@ -50,6 +51,8 @@ const memberOf = ({ type, station, masterIds }) => ({
 /** Whether a number can stand on the line beside the others. */
 const checkNumber = type => (node, station) => {
   const own = memberOf({ type, station, masterIds: current(node, 'masterIds') })
+  const listener = listenerOf(current(node, 'line'))
+  if (listener) return t('problem.listened', { other: listener })
   for (const other of neighbours(node)) {
     const name = deviceName(other)
     if (String(other.station) === String(station).trim()) return t('problem.sameStation', { other: name })
@@ -95,6 +98,16 @@ const chino = node => {
   return { type: 'chino-config', addressMode, wordOrder }
 }
 
+/** Where a message ends must be said in the way that was chosen. */
+const checkEnd = (node, value) => Boolean(`${value}${current(node, 'last') ?? ''}`.trim()) || t('problem.needsEnd')
+const checkCount = (_node, value) => Number(value) > 0 || t('problem.needsCount')
+const checkGap = (node, value) =>
+  truthy(current(node, 'bidirectional')) ||
+  current(node, 'framing') !== 'gap' ||
+  Number(value) > 0 ||
+  t('problem.needsGap')
+const checkFlow = (node, value) => value !== 'dc' || !truthy(current(node, 'bidirectional')) || t('problem.noDc')
+
 /** Checks beyond a property's own row; they throw a PlcError or answer a text. */
 const MORE = {
   'nx-config': {
@@ -134,7 +147,15 @@ const MORE = {
     verify: (node, value) => !truthy(value) || !isBroadcast(node) || t('problem.broadcastMode'),
     items: checkItems('regulator', 'chino-config'),
     target: checkTarget('regulator')
-  }
+  },
+  'melsec-c24': {
+    line: node => lineOfListener(node, name => current(node, name)),
+    end: checkEnd,
+    count: checkCount,
+    gap: checkGap,
+    flow: checkFlow
+  },
+  'incon-link': { line: node => lineOfListener(node, name => current(node, name)) }
 }
 
 const isEmpty = value => value === undefined || value === null || value === ''
@@ -146,7 +167,7 @@ const verdict = (type, { name, node, value }) => {
   if (problem)
     return t(`problem.${problem}`, { allowed: allowed(row).replace(/^(\d+) to (\d+)/, `$1${t('editor.to')}$2`) })
   const more = MORE[type] && MORE[type][name]
-  return more && (row.kind === 'list' || !isEmpty(value)) ? more(node, value) : true
+  return more && (row.kind === 'list' || row.blank || !isEmpty(value)) ? more(node, value) : true
 }
 
 /**

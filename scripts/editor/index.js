@@ -7,5 +7,7 @@ module.exports = {
   ...require('./line'),
   ...require('./plc'),
   ...require('./regulator'),
-  ...require('./flow')
+  ...require('./flow'),
+  editListener: require('./listener').editListener,
+  saveListener: require('./listener').saveListener
 }

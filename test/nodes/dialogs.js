@@ -7,7 +7,16 @@ const vm = require('node:vm')
 
 const ROOT = path.join(__dirname, '..', '..')
 const NODES = path.join(ROOT, 'nodes')
-const TYPES = ['plc-line', 'nx-config', 'nx-read', 'nx-write', 'chino-config', 'chino-regulator']
+const TYPES = [
+  'plc-line',
+  'nx-config',
+  'nx-read',
+  'nx-write',
+  'chino-config',
+  'chino-regulator',
+  'melsec-c24',
+  'incon-link'
+]
 const LANGUAGES = ['en-US', 'ko']
 
 const html = type => fs.readFileSync(path.join(NODES, `${type}.html`), 'utf8')
@@ -36,7 +45,8 @@ const loadDialogs = ({ language = 'en-US', nodes = [] } = {}) => {
     nodes: {
       registerType: (type, definition) => (types[type] = definition),
       node: id => nodes.find(node => node.id === id) ?? null,
-      eachConfig: visit => nodes.forEach(visit)
+      eachConfig: visit => nodes.forEach(visit),
+      eachNode: visit => nodes.forEach(visit)
     }
   }
   const context = vm.createContext({ RED, $: () => ({ length: 0 }), console })

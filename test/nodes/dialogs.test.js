@@ -6,7 +6,7 @@ const { PROPERTIES } = require('../../nodes/properties')
 const { build, TARGET } = require('../../scripts/build-editor')
 const { TYPES, NODES, html, loadDialogs } = require('./dialogs')
 
-const WRITERS = ['nx-write', 'chino-regulator']
+const WRITERS = ['nx-write', 'chino-regulator', 'melsec-c24', 'incon-link']
 
 describe('node dialogs', () => {
   it('resources/editor.js is what scripts/build-editor.js makes', () => {
@@ -52,7 +52,9 @@ describe('node dialogs', () => {
     const { types } = loadDialogs()
     for (const [type, most] of [
       ['nx-write', 2],
-      ['chino-regulator', 3]
+      ['chino-regulator', 3],
+      ['melsec-c24', 3],
+      ['incon-link', 3]
     ]) {
       assert.equal(types[type].outputs, most)
       assert.equal(types[type].defaults.outputs.value, 1)
@@ -82,7 +84,12 @@ describe('node dialogs', () => {
     assert.equal(types['chino-regulator'].category, 'serial PLC')
     assert.equal(types['chino-regulator'].paletteLabel, 'CHINO regulator (Modbus)')
     assert.notEqual(types['chino-regulator'].color, types['nx-read'].color)
-    for (const type of ['nx-read', 'nx-write', 'chino-regulator']) {
+    assert.equal(types['melsec-c24'].paletteLabel, 'MELSEC C24')
+    assert.equal(types['incon-link'].paletteLabel, 'INCON link')
+    const colours = ['nx-read', 'chino-regulator', 'melsec-c24', 'incon-link'].map(type => types[type].color)
+    assert.equal(new Set(colours).size, colours.length)
+    for (const type of ['nx-read', 'nx-write', 'chino-regulator', 'melsec-c24', 'incon-link']) {
+      assert.equal(types[type].category, 'serial PLC')
       assert.ok(fs.existsSync(path.join(NODES, 'icons', types[type].icon)))
     }
   })

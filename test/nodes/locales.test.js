@@ -7,7 +7,7 @@ const { CODES } = require('../../lib/error')
 const { statusOf } = require('../../nodes/status')
 const { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, loadDialogs, lookUp } = require('./dialogs')
 
-const ON_TABS = ['nx-read', 'nx-write', 'chino-regulator']
+const ON_TABS = ['nx-read', 'nx-write', 'chino-regulator', 'melsec-c24', 'incon-link']
 
 const leaves = (tree, prefix = '') =>
   Object.entries(tree).flatMap(([key, value]) =>
@@ -27,7 +27,7 @@ const quoted = (text, pattern) => [...text.matchAll(pattern)].map(([, found]) =>
 const ownKeys = type => [
   ...quoted(html(type), /data-i18n="(?:\[\w+\])?([^"]+)"/g),
   ...quoted(html(type), /_\(\s*'([\w-]+\.[\w.]+)'/g),
-  ...quoted(html(type), /'((?:nx-write|chino-regulator)\.port\.\w+)'/g)
+  ...quoted(html(type), /'((?:nx-write|chino-regulator|melsec-c24|incon-link)\.port\.\w+)'/g)
 ]
 
 /** Keys of what the dialogs share. */
@@ -58,6 +58,13 @@ const statusKeys = () => {
       { line: { state: 'waiting', reason: { code } } },
       ...['confirmed', 'unknown', 'refused', 'failed'].map(outcome => ({ phase: 'written', outcome, code }))
     ]),
+    { phase: 'listening' },
+    { phase: 'sending' },
+    { phase: 'received', received: 3, complete: true },
+    { phase: 'received', received: 3, complete: false },
+    ...[undefined, 'SENDING_OFF', 'WRITE_STALLED'].flatMap(code =>
+      ['sent', 'confirmed', 'unknown', 'refused', 'failed'].map(outcome => ({ phase: 'sent', outcome, code }))
+    ),
     ...['opening', 'jammed', 'waiting'].map(state => ({ line: { state } }))
   ]
   return states.map(state => `status.${statusOf(state).key}`)

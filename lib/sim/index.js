@@ -9,6 +9,7 @@ module.exports = {
   ...require('./melsec-c24'),
   ...require('./incon-controller'),
   ...require('./line'),
+  ...require('./peer'),
   ...require('./wire'),
   ...require('./faults'),
   ...require('./pty'),

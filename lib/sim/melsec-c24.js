@@ -67,7 +67,10 @@ function createMelsecC24(given) {
       sender.attach(send, port)
       lines.cts = port?.cts ?? lines.cts
       if (settings.flow === 'dtr') lines.cts(true)
-      if (speaks) speakOn(speaks, { clock, send: value => sender.message(bytesOf(value), {}) })
+      if (speaks) parts.stop = speakOn(speaks, { clock, send: value => sender.message(bytesOf(value), {}) })
+    },
+    close() {
+      for (const part of [parts.stop, receiver.reset, sender.reset, program.reset]) part()
     },
     disguise: (bytes, { random }) => Buffer.from(Array.from(bytes, () => random.integer(0x20, 0x7e))),
     send: (value, options = {}) => sender.message(bytesOf(value), options),
@@ -114,7 +117,7 @@ function connectParts(settings, { counts, memory }) {
     },
     answer: value => void (value != null && later(() => sender.message(bytesOf(value), {})))
   })
-  return { receiver, sender, program, sent, lines }
+  return { receiver, sender, program, sent, lines, stop: () => {} }
 }
 
 function records({ history, onSent }) {
@@ -151,12 +154,14 @@ function bytesOf(value) {
 
 function speakOn({ every, value }, { clock, send }) {
   let number = 0
+  let timer = null
   const say = () => {
+    timer = clock.setTimer(say, every, { quiet: true })
     const said = value(number++)
     if (said != null) send(said)
-    clock.setTimer(say, every, { quiet: true })
   }
-  clock.setTimer(say, every, { quiet: true })
+  timer = clock.setTimer(say, every, { quiet: true })
+  return () => clock.clearTimer(timer)
 }
 
 /**
@@ -179,6 +184,7 @@ function speakOn({ every, value }, { clock, send }) {
  * @property {() => { held: number, free: number, stopped: boolean }} os the OS area
  * @property {() => boolean} sioError the bit in 201H / 202H
  * @property {() => void} clearError
+ * @property {() => void} close it says and does nothing by itself any more
  * @property {() => void} powerOn everything is as after switching on
  * @typedef {{ at: number, arrived: number, by: 'code'|'frame'|'count'|'timer'|'length', bytes: Buffer, count: number }} Message `at`: when it was read, ms
  *   of the clock; `count` in units, as at 600H

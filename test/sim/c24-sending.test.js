@@ -66,6 +66,14 @@ describe('simulated C24: sending', () => {
     assert.strictEqual(await run({ program: ({ bytes: asked }) => `${asked}=1` }), `ASK=1${CRLF}`)
     assert.strictEqual(await run({ speaks: { every: 500, value: n => `N${n}` } }), `N0${CRLF}N1${CRLF}`)
   })
+  it('closed: nothing more, no timer left', async () => {
+    const { clock, c24, hear, said } = channel({ speaks: { every: 500, value: () => 'A' }, timer0: 100, rate: 0.001 })
+    hear(`ONE${CRLF}TWO${CRLF}`)
+    await clock.advance(600)
+    c24.close()
+    await clock.drain()
+    assert.deepStrictEqual([said(), clock.pending(), clock.now()], ['41 0D 0A', 0, 600])
+  })
 })
 
 describe('simulated C24: bidirectional protocol', () => {

@@ -3,6 +3,7 @@
 const assert = require('node:assert')
 const { spawn, spawnSync } = require('node:child_process')
 const fs = require('node:fs')
+const net = require('node:net')
 const os = require('node:os')
 const path = require('node:path')
 const { read } = require('../../scripts/simulate')
@@ -31,6 +32,18 @@ function simulate(...args) {
   }
   return { line, stop, ended }
 }
+
+/** What comes back over TCP, until it is so long. */
+const talk = (port, ask, length) =>
+  new Promise((resolve, reject) => {
+    let text = ''
+    const socket = net.connect(port, '127.0.0.1', () => socket.write(ask, 'latin1'))
+    socket.on('error', reject)
+    socket.on('data', data => {
+      text += data.toString('latin1')
+      if (text.length >= length) socket.end(() => resolve(text))
+    })
+  })
 
 const runPython = (...args) =>
   new Promise(resolve => {
@@ -122,8 +135,8 @@ describe('npm run simulate', function () {
   })
 
   const wrong = [
-    [[], 'the device is missing: it must be nx, chino or mixed'],
-    [['modbus', '--tcp', '0'], 'the device is modbus: it must be nx, chino or mixed'],
+    [[], 'the device is missing: it must be nx, chino, mixed, c24 or incon'],
+    [['modbus', '--tcp', '0'], 'the device is modbus: it must be nx, chino, mixed, c24 or incon'],
     [['nx'], '--pty, --tcp is missing: give one of them'],
     [['nx', '--tcp', '0', '--pty', 'x'], '--pty, --tcp is both'],
     [['nx', '--tcp', '70000'], '--tcp is 70000: it must be a whole number from 0 to 65535'],
@@ -141,6 +154,14 @@ describe('npm run simulate', function () {
     [['mixed', '--tcp', '0', '--fault', 'error:0.1:6'], 'from 1 to 5'],
     [['nx', '--tcp', '0', '--fault', 'tired:0.1'], 'fault is tired:0.1: known faults are lost, silent,'],
     [['nx', '--tcp', '0', '--fault', 'late'], 'fault is late: the rate must be a number'],
+    [['c24', '--tcp', '0', '--flow', 'dtr'], '--flow is dtr: it must be none or dc'],
+    [['c24', '--tcp', '0', '--stations', '1'], '--stations is 1: c24 has no such option'],
+    [['c24', '--tcp', '0', '--rate', 'x'], '--rate is x: it must be a whole number from 0 to 1000000'],
+    [['c24', '--tcp', '0', '--scan', '5'], '--scan is 5: c24 has no such option'],
+    [['incon', '--tcp', '0', '--scan', '0'], '--scan is 0: it must be a whole number from 1 to 1000'],
+    [['incon', '--tcp', '0', '--fault', 'error:0.1:6'], 'from 1 to 5'],
+    [['nx', '--tcp', '0', '--wear', 'lost:2'], '--wear is lost:2: it must be damaged:RATE, lost:RATE'],
+    [['nx', '--tcp', '0', '--show'], '--show is true: nx has no such option'],
     [['nx', '--tcp', '0', '--frobnicate'], "Unknown option '--frobnicate'"]
   ]
   for (const [args, text] of wrong) {
@@ -159,6 +180,52 @@ describe('npm run simulate', function () {
     assert.strictEqual(code, 2)
     assert.match(text, /^"X1" names the area X, .*\nTry --help\.\n$/)
   })
+
+  it('the rates of wear', () => {
+    assert.deepStrictEqual(read(['nx', '--tcp', '0', '--wear', 'damaged:0.01,lost:.5']).wear, {
+      damaged: 0.01,
+      lost: 0.5
+    })
+    assert.strictEqual(read(['nx', '--tcp', '0']).wear, null)
+  })
+
+  // what goes out is in the test alone: the example of the bidirectional protocol's page, and a line
+  const talks = [
+    {
+      device: 'c24',
+      args: ['--answer', 'echo', '--end', '0D', '--show'],
+      ask: 'ABC\r',
+      answer: 'ABC\r',
+      shown: /^c24 \(non-procedure, flow none\) on tcp .*\ntaken: "ABC"\n$/
+    },
+    {
+      device: 'c24',
+      args: ['--protocol', 'bidirectional', '--show'],
+      ask: '\x05\x05\x00ABCDEFG123\x77\x02',
+      answer: '\x06',
+      shown: /^c24 \(bidirectional, flow none\) on tcp .*\ntaken: "ABCDEFG123"\n$/
+    },
+    {
+      device: 'incon',
+      args: ['--answer', 'echo', '--scan', '5', '--show'],
+      ask: 'O1234\r\n',
+      answer: 'O1234\r\n',
+      shown: /^incon \(scan 5 ms\) on tcp .*\ntaken: "O1234\\r\\n"\n$/
+    }
+  ]
+  for (const { device, args, ask, answer, shown } of talks) {
+    it(`${device} ${args.join(' ')}`, async () => {
+      const { line, stop } = simulate(device, '--tcp', '0', '--baud', '115200', '--quiet', ...args)
+      let heard
+      try {
+        const [, port] = /** @type {any} */ (/:(\d+), 115200/.exec(await line))
+        heard = await talk(Number(port), ask, answer.length)
+      } finally {
+        assert.match((await stop('SIGTERM')).text, shown)
+      }
+      assert.strictEqual(heard, answer)
+    })
+  }
 
   it('each station of a mixed line gets the ranges of its own notation', () => {
     const { stations } = read([
@@ -189,7 +256,11 @@ describe('npm run simulate', function () {
       'late ',
       'merged ',
       'chino ',
-      'mixed '
+      'mixed ',
+      'c24 ',
+      'incon ',
+      '--timer0 N',
+      '--scan MS'
     ])
       assert.ok(text.includes(word), word)
   })

@@ -4,8 +4,6 @@ const { PlcError } = require('../error')
 const { Alarm } = require('./alarm')
 
 const TOLERANCE = 0.001
-/** Bytes that an adapter still holds when it has taken the last one. */
-const FIFO = 16
 
 /**
  * Carries one letter at a time over the wire: its pieces, each after the one before has left by the wire's time, then its answer.
@@ -94,7 +92,7 @@ class Courier {
     letter.out = this.#flow.pieceEnd(letter.wire, from)
     const bytes = letter.wire.subarray(from, letter.out)
     const at = Math.max(now, this.#sendEnd)
-    letter.piece = { given: now, at, from, end: at + bytes.length * this.#character, taken: false }
+    letter.piece = { at, from, end: at + bytes.length * this.#character, taken: false }
     letter.writing = true
     this.#give(bytes, error => this.#taken(letter, error))
     letter.writing = false
@@ -109,11 +107,9 @@ class Courier {
     const { piece } = letter
     const now = this.#clock.now()
     piece.taken = true
-    if (now > piece.given) {
-      // the port had to wait: the last bytes are leaving now
-      piece.end = Math.max(piece.end, now + Math.min(FIFO, letter.out - piece.from) * this.#character)
-      this.#sendEnd = Math.max(this.#sendEnd, piece.end)
-    }
+    // where the port had to wait
+    piece.end = Math.max(piece.end, now)
+    this.#sendEnd = Math.max(this.#sendEnd, now)
     if (!letter.writing) this.advance()
   }
 

@@ -19,7 +19,7 @@ class Letter {
   #before = 0
   /** bytes handed to the port */
   out = 0
-  /** @type {any} the last of its pieces: `{ given, at, from, end, taken }` */
+  /** @type {any} the last of its pieces: `{ at, from, end, taken }` */
   piece = null
   /** inside the call that hands a piece to the port */
   writing = false

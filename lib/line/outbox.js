@@ -41,8 +41,9 @@ class Outbox {
 
   /**
    * @param {any} parts of the line, see stream.js; `flow`: how it is used at first
-   * @param {{ refusal: () => any, troubled: (error: any) => void, lastByteAt: () => number, heard: () => number,
-   *   sent: (bytes: Buffer, end: number) => void }} host heard: bytes that came in all
+   * @param {{ refusal: () => any, troubled: (error: any) => void, lastByteAt: () => number, heldUntil: () => number,
+   *   heard: () => number, sent: (bytes: Buffer, end: number) => void }} host heard: bytes that came in all; heldUntil: when a message that is
+   *   coming will be torn
    */
   constructor(parts, host) {
     const { name, clock, settings, times, recorder, memories, flow } = parts
@@ -62,7 +63,7 @@ class Outbox {
       stopped: () => this.#stall()
     })
     this.#alarm = new Alarm(clock)
-    this.#silence = new Silence({ clock, quietSince: () => Math.max(this.sendEnd, host.lastByteAt()) })
+    this.#silence = new Silence({ clock, quietSince: () => Math.max(this.sendEnd, this.#heardUntil()) })
   }
 
   /** How the line is used has been decided. @param {import('./flow').Flow} flow */
@@ -134,6 +135,19 @@ class Outbox {
       () => this.#begin(),
       now => this.#isJammed(now)
     )
+  }
+
+  /**
+   * Adapters deliver in pieces: the pauses between them are no silence of the wire. So who waits for silence waits for the rest of a message, too.
+   */
+  #heardUntil() {
+    const { lastByteAt, heldUntil } = this.#host
+    return this.#letter?.quiet > 0 ? Math.max(lastByteAt(), heldUntil()) : lastByteAt()
+  }
+
+  /** A message that was coming has ended. */
+  quieter() {
+    if (this.#letter?.waits) this.#wait()
   }
 
   #tornUntil() {

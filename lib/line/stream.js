@@ -47,7 +47,7 @@ class Stream {
     const sent = (bytes, end) => this.#echo.sent(bytes, end)
     this.#outbox = new Outbox(
       { ...parts, flow: this.#flow },
-      { refusal, troubled, lastByteAt, sent, heard: () => this.#heard }
+      { refusal, troubled, lastByteAt, heldUntil: () => this.#heldUntil, sent, heard: () => this.#heard }
     )
     this.#silence = new Silence({ clock, quietSince: lastByteAt })
   }
@@ -144,13 +144,20 @@ class Stream {
     else this.#recorder.unclaimed('stray', bytes)
   }
 
+  get #heldUntil() {
+    const { held = 0, silence = 0 } = this.#splitter ?? {}
+    return held > 0 && silence > 0 ? this.#lastByteAt + silence : -Infinity
+  }
+
   #split(work) {
+    const wasHeld = this.#heldUntil > -Infinity
     // a splitter that throws costs what it held, not the process
     const messages = attempt(work, () => attempt(() => this.#splitter.reset()))
     this.#deliverAll(messages)
     const splitter = this.#splitter
     if (splitter?.held > 0 && splitter.silence > 0) this.#silence.wait(splitter.silence, this.#flush)
     else this.#silence.stop()
+    if (wasHeld && this.#heldUntil === -Infinity) this.#outbox.quieter()
   }
 
   #flush = () => this.#deliverAll(attempt(() => this.#splitter?.flush() ?? []))

@@ -21,12 +21,13 @@ function createGate(clock, { character, put }) {
     const part = first.bytes.subarray(0, FIFO)
     first.bytes = first.bytes.subarray(part.length)
     const last = first.bytes.length === 0
-    if (last) waiting.shift()
-    timer = clock.setTimer(next, part.length * character, {
-      quiet: waiting.length > 0 && waiting[0].bytes.length > FIFO
-    })
+    timer = clock.setTimer(() => left(last), part.length * character, { quiet: !last })
     put(part)
-    if (last) first.done()
+  }
+  const left = last => {
+    const done = last ? waiting.shift()?.done : null
+    next()
+    done?.()
   }
   return {
     write(bytes, done) {

@@ -58,6 +58,7 @@ const CAUSES = {
   PORT_ERROR: 'down',
   READ_ONLY: 'readOnly',
   SENDING_OFF: 'sendingOff',
+  C24_NAK: 'rejected',
   WRITE_STALLED: 'held',
   SUPERSEDED: 'superseded'
 }

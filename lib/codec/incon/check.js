@@ -14,7 +14,7 @@ const STAR = 0x2a
 const HEAD = 4 // #NN and a space
 const TAIL = 3 // *HH
 
-/** @param {Uint8Array} bytes @returns {number} 0..255; 54h for `#01 A` */
+/** @param {Uint8Array} bytes @returns {number} 0..255; 43h for `#01 A` */
 const xor = bytes => bytes.reduce((sum, byte) => sum ^ byte, 0)
 
 /** @param {number} number @returns {number} of the line after that one */

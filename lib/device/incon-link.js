@@ -72,9 +72,9 @@ class InconLink {
     this.#settings = readSettings(given)
     this.#lease = lease
     this.#clock = clock
-    const { most, silence, encoding, checked, quiet } = this.#settings
+    const { most, silence, encoding, checked } = this.#settings
     const framing = inconFraming({ most, silence, ascii: encoding === 'ascii', checked })
-    this.#heard = lease.listen(framing, (message, { at }) => this.#take(message, at), { torn: { wait: quiet } })
+    this.#heard = lease.listen(framing, (message, { at }) => this.#take(message, at))
   }
 
   get name() {

@@ -98,6 +98,16 @@ function arrive(wire, sending) {
   active.splice(active.indexOf(sending), 1)
 }
 
+/** The sender has no power any more: what it has not begun does not go out. */
+function cutOff({ active, byteMs, clock }, from) {
+  for (const sending of active.filter(each => each.from === from)) {
+    const begun = Math.max(0, Math.ceil((clock.now() - sending.start) / byteMs))
+    sending.bytes = sending.bytes.subarray(0, Math.max(sending.told, begun))
+    sending.end = sending.start + sending.bytes.length * byteMs
+    if (sending.told === sending.bytes.length) active.splice(active.indexOf(sending), 1)
+  }
+}
+
 function tell(wire, { from }, { piece, times }) {
   if (piece.length === 0) return
   for (const party of [...wire.parties]) if (hears(wire, party, from)) party.hear(piece, times, from)
@@ -116,4 +126,4 @@ function worn({ wear, random }, piece) {
   return Buffer.from(left)
 }
 
-module.exports = { transmit, idleAt }
+module.exports = { cutOff, idleAt, transmit }

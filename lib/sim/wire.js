@@ -3,7 +3,7 @@
 const { PlcError } = require('../error')
 const { createRandom } = require('./random')
 const { applyFault } = require('./faults')
-const { idleAt, transmit } = require('./wire-bytes')
+const { cutOff, idleAt, transmit } = require('./wire-bytes')
 
 /**
  * One line with several stations and one or more masters. Every byte takes its time on the wire, in both directions; on a
@@ -48,14 +48,19 @@ function createWire(options) {
     idleAt: () => idleAt(wire),
     setEcho: on => void (wire.echo = on),
     setWear: wear => void (wire.wear = wear),
-    unplug() {
-      wire.plugged = false
-      const masters = [...wire.parties].filter(party => party.handlers)
-      masters.forEach(master => wire.parties.delete(master))
-      masters.forEach(master => master.handlers.closed())
-    },
+    unplug: () => unplug(wire),
     plug: () => void (wire.plugged = true)
   }
+}
+
+function unplug(wire) {
+  wire.plugged = false
+  const masters = [...wire.parties].filter(party => party.handlers)
+  for (const master of masters) {
+    cutOff(wire, master)
+    wire.parties.delete(master)
+  }
+  masters.forEach(master => master.handlers.closed())
 }
 
 const stationsOf = ({ parties }) => [...parties].filter(({ station }) => station).map(({ station }) => station)

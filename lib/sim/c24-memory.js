@@ -27,10 +27,12 @@ function createC24Memory({ at, unit }) {
   return {
     get,
     words: (address, count) => Array.from({ length: count }, (_, n) => get(address + n)),
-    /** The count that the sequence program sees. */
-    received(bytes) {
+    /** What the sequence program sees. With user frames the last byte of an odd number is not counted in word units. */
+    received(bytes, frames = false) {
       image(at.receive, bytes)
-      return get(at.receive)
+      const odd = frames && unit === 'word' && bytes.length % 2 === 1
+      if (odd) words.set(at.receive, get(at.receive) - 1)
+      return { bytes: odd ? bytes.subarray(0, -1) : bytes, count: get(at.receive) }
     },
     sending: bytes => image(at.send, bytes),
     result: (which, code) => void words.set(at[`${which}Result`], code),

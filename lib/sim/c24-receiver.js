@@ -1,9 +1,9 @@
 'use strict'
 
 const { OS_AREA } = require('./c24-settings')
-const { createFreeFraming, createBidirectionalFraming, LITERAL, CODES } = require('./c24-framing')
+const { CODES, DC1, DC3, LITERAL } = require('./c24-bytes')
+const { BidirectionalFraming, FreeFraming } = require('./c24-framing')
 
-const [DC1, DC3] = [0x11, 0x13]
 const HEARD_AT_ONCE = 16
 
 /**
@@ -18,7 +18,8 @@ const HEARD_AT_ONCE = 16
 function createC24Receiver(settings, out) {
   const free = settings.protocol === 'non-procedure'
   const { counts } = out
-  const framing = free ? createFreeFraming(settings, counts) : createBidirectionalFraming(settings, counts)
+  /** @type {any} */
+  const framing = free ? new FreeFraming(settings, counts) : new BidirectionalFraming(settings, counts)
   const c24 = { settings, out, framing, ...emptyState() }
   return {
     receive: bytes => receive(c24, bytes),
@@ -62,14 +63,16 @@ function receive(c24, bytes) {
   out.counts.bytesIn += bytes.length
   for (const byte of bytes) hear(c24, byte)
   if (settings.timer0Ms > 0) rewind(c24)
+  return []
 }
 
 /** One byte at the port: transmission control and the transparent code are looked at first. */
 function hear(c24, byte) {
-  const { settings, out, escaped } = c24
+  const { settings, out, framing, escaped } = c24
   c24.escaped = false
   if (escaped) return store(c24, byte | LITERAL)
-  if (settings.transparent.length > 0 && byte === settings.transparent[0]) c24.escaped = true
+  if (framing.bare?.()) store(c24, byte)
+  else if (settings.transparent.length > 0 && byte === settings.transparent[0]) c24.escaped = true
   else if (settings.flow === 'dc' && (byte === DC1 || byte === DC3)) out.allow(byte === DC1)
   else store(c24, byte)
 }
@@ -142,24 +145,15 @@ function pump(c24) {
 
 function deliver(c24, taken) {
   const { settings, out } = c24
-  const message = taken && converted(taken, settings)
   if (!taken) return
-  if (taken.by === 'timer') out.counts.timeouts++
-  if (!message) return void out.counts.conversionErrors++
-  c24.occupied = true
   const { counts, memory } = out
+  if (taken.by === 'timer') counts.timeouts++
+  if (!taken.bytes) return void counts.conversionErrors++
+  c24.occupied = true
   counts.messages++
-  const count = memory.received(message.bytes)
+  const { bytes, count } = memory.received(taken.bytes, taken.frames)
   memory.result('receive', 0)
-  out.arrived({ at: settings.clock.now(), by: taken.by, bytes: message.bytes, count })
-}
-
-/** ASCII-binary conversion, and the odd byte that word units with user frames lose; null: it cannot be converted. */
-function converted({ bytes, frames }, { asciiBinary, unit }) {
-  const odd = each => (frames && unit === 'word' ? each.subarray(0, each.length & ~1) : each)
-  if (!asciiBinary) return { bytes: odd(bytes) }
-  const text = bytes.toString('latin1')
-  return /^([0-9A-F]{2})*$/.test(text) ? { bytes: odd(Buffer.from(text, 'hex')) } : null
+  out.arrived({ at: settings.clock.now(), by: taken.by, bytes, count })
 }
 
 /** Bidirectional: answers must not wait behind a full receive area, so messages are cut before they wait. */
@@ -170,13 +164,12 @@ function converse(c24, value) {
 }
 
 function take(c24, result) {
-  const { out, settings } = c24
+  const { out } = c24
   if (!result) return
   if (result.answer) return out.answered(result)
   if (!c24.valid) return void out.counts.invalid++
-  const message = result.refuse ? null : converted(result, settings)
-  if (!message) return out.refuse(result.refuse ?? CODES.sum)
-  const { length } = message.bytes
+  if (result.refuse) return out.refuse(result.refuse)
+  const { length } = result.bytes
   if (!c24.occupied) return deliver(c24, result)
   if (c24.held + length > OS_AREA) {
     lose(c24, length)

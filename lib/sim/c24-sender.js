@@ -1,8 +1,7 @@
 'use strict'
 
-const { bidirectionalMessage } = require('./c24-framing')
+const { bidirectionalMessage, freeMessage } = require('./c24-bytes')
 
-const [DC1, DC3] = [0x11, 0x13]
 // the module looks at transmission control between its bytes: what waits for the peer's stop, and what its own stop waits for
 const PIECE = 4
 const MOST_WAITING = 1000
@@ -59,20 +58,11 @@ function enqueue(c24, bytes, { end = true } = {}) {
   next(c24)
 }
 
-/** What goes over the wire for the words of the sending area. */
+/** What goes over the wire for the words of the sending area; `end` false: they alone. */
 function wireBytes({ bytes, end }, settings) {
-  const body = settings.asciiBinary ? Buffer.from(bytes.toString('hex').toUpperCase(), 'latin1') : bytes
-  if (settings.protocol === 'bidirectional') return escaped(bidirectionalMessage(body, settings), settings)
-  const { first, last } = settings
-  const close = first.length + last.length > 0 ? last : settings.end
-  return Buffer.concat([...(end ? [first] : []), escaped(body, settings), ...(end ? [close] : [])])
-}
-
-/** DC1, DC3 and the transparent code itself get the transparent code before them. */
-function escaped(bytes, { transparent }) {
-  if (transparent.length === 0) return bytes
-  const [code] = transparent
-  return Buffer.from([...bytes].flatMap(byte => ([DC1, DC3, code].includes(byte) ? [code, byte] : [byte])))
+  if (settings.protocol === 'bidirectional') return bidirectionalMessage(bytes, settings)
+  const none = Buffer.alloc(0)
+  return freeMessage(bytes, end ? settings : { ...settings, first: none, last: none, end: none })
 }
 
 function next(c24) {
@@ -164,4 +154,4 @@ function finish(c24, result) {
   next(c24)
 }
 
-module.exports = { createC24Sender, DC1, DC3 }
+module.exports = { createC24Sender }

@@ -55,7 +55,7 @@ const TABLE = {
   flow: ['none', oneOf('none', 'dc', 'dtr')],
   stopFree: [64, number(64, 4095)],
   goFree: [263, number(263, 4096)],
-  transparent: ['', hex(1)],
+  transparent: ['', hex(8)],
   asciiBinary: [false, yes],
   sumCheck: [true, yes],
   simultaneous: ['both', oneOf('both', 'receive', 'send', 'none')],

@@ -1,11 +1,11 @@
 'use strict'
 
 const { PlcError } = require('../error')
-const { acknowledgement } = require('./c24-framing')
+const { acknowledgement, DC1, DC3 } = require('./c24-bytes')
 const { createC24Memory } = require('./c24-memory')
 const { createC24Program } = require('./c24-program')
 const { createC24Receiver } = require('./c24-receiver')
-const { createC24Sender, DC1, DC3 } = require('./c24-sender')
+const { createC24Sender } = require('./c24-sender')
 const { AREA_WORDS, OS_AREA, c24Settings } = require('./c24-settings')
 
 const EMPTY_COUNTS = [
@@ -34,7 +34,7 @@ const EMPTY_COUNTS = [
  *   say both; false); `count` receive data count in units (511); `first`, `last` user frames in hex, in place of `end`
  * - `timer0` time without reception that ends a message, in bytes of 12 bits (0: for ever)
  * - `flow` `none`, `dc` (DC1/DC3, both ways) or `dtr`; `stopFree` 64, `goFree` 263: free bytes of the OS area
- * - `transparent` byte in hex; `asciiBinary`
+ * - `transparent` in hex: the additional code, then codes that get it beside DC1 and DC3; `asciiBinary`
  * - `sumCheck` true, `simultaneous` `both`, `receive`, `send`, `none` (which of two crossing messages count), `ackTimeout` 5000 ms, `retries` 0
  * - `rate` messages/s and `byteRate` bytes/s at which the program reads (no limit; 0: only `take()`); `program` `take`, `echo` or a function
  *   `message → text | Buffer | words | null`, sent `turnaround` ms (2) later; `speaks` `{ every: ms, value(n) }` what it sends by itself
@@ -51,6 +51,7 @@ function createMelsecC24(given) {
   const parts = connectParts(settings, { counts, memory })
   const { receiver, sender, program, sent, lines } = parts
   const { speaks, clock } = settings
+  const allow = () => settings.flow === 'dtr' && lines.cts(true)
   return {
     station: settings.station,
     settings,
@@ -58,20 +59,15 @@ function createMelsecC24(given) {
     messages: program.messages,
     sent,
     memory,
-    receive: bytes => {
-      receiver.receive(bytes)
-      return []
-    },
+    receive: bytes => receiver.receive(bytes),
     appetite: receiver.appetite,
     speak(send, port) {
       sender.attach(send, port)
       lines.cts = port?.cts ?? lines.cts
-      if (settings.flow === 'dtr') lines.cts(true)
+      allow()
       if (speaks) parts.stop = speakOn(speaks, { clock, send: value => sender.message(bytesOf(value), {}) })
     },
-    close() {
-      for (const part of [parts.stop, receiver.reset, sender.reset, program.reset]) part()
-    },
+    close: () => [parts.stop, receiver.reset, sender.reset, program.reset].forEach(part => part()),
     disguise: (bytes, { random }) => Buffer.from(Array.from(bytes, () => random.integer(0x20, 0x7e))),
     send: (value, options = {}) => sender.message(bytesOf(value), options),
     take: program.take,
@@ -82,7 +78,7 @@ function createMelsecC24(given) {
     powerOn() {
       for (const part of [memory.clear, receiver.reset, sender.reset, program.reset]) part()
       // nothing is sent: the other side has to assume that it may send
-      if (settings.flow === 'dtr') lines.cts(true)
+      allow()
     }
   }
 }
@@ -91,7 +87,7 @@ function connectParts(settings, { counts, memory }) {
   const { clock, flow, protocol, turnaround } = settings
   const lines = { cts: on => void on }
   const later = fn => void clock.setTimer(fn, turnaround, { quiet: true })
-  const respond = code => later(() => sender.control(acknowledgement(code)))
+  const respond = code => later(() => sender.control(acknowledgement(code, settings)))
   const { sent, done } = records(settings)
   const sender = createC24Sender(settings, { counts, memory, done })
   const receiver = createC24Receiver(settings, {

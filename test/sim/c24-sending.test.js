@@ -53,7 +53,7 @@ describe('simulated C24: sending', () => {
     const other = channel({ asciiBinary: true, first: '02', last: '03' })
     other.c24.send(bytes('0A FF'))
     await other.clock.drain()
-    assert.strictEqual(other.said(), '02 30 41 46 46 03')
+    assert.strictEqual(other.said(), '30 32 30 41 46 46 30 33')
   })
   it('a program that echoes, one that answers, one that speaks by itself', async () => {
     const run = async settings => {
@@ -101,6 +101,24 @@ describe('simulated C24: bidirectional protocol', () => {
     hear(bytes('05 03 00 41 42 43'))
     await clock.drain()
     assert.deepStrictEqual([String(c24.messages[0].bytes), said()], ['ABC', '06'])
+  })
+  it('ASCII-binary and transparent code: the sum counts the characters and is neither', async () => {
+    const characters = Buffer.from('0300111041', 'latin1')
+    const total = [...characters].reduce((sum, byte) => sum + byte, 0)
+    const settings = { protocol: 'bidirectional', unit: 'byte', asciiBinary: true }
+    const { clock, c24, hear, said } = channel(settings)
+    hear(Buffer.concat([Buffer.of(5), characters, Buffer.of(total & 255, total >> 8)]))
+    await clock.drain()
+    assert.deepStrictEqual([c24.messages[0].bytes.toString('hex'), said()], ['111041', '06'])
+    const other = channel({ protocol: 'bidirectional', unit: 'byte', transparent: '10' })
+    // 3 + 17 + 16 + 237 = 0111H: a sum of DC1s, not made transparent
+    const message = bytes('05 03 00 10 11 10 10 ED 11 01')
+    other.hear(message)
+    await other.clock.drain()
+    assert.deepStrictEqual([other.c24.messages[0].bytes.toString('hex'), other.said()], ['1110ed', '06'])
+    other.c24.send(bytes('11 10 ED'))
+    await other.clock.advance(50)
+    assert.strictEqual(other.said(), '06 05 03 00 10 11 10 10 ED 11 01')
   })
   it('ACK when the program has read, not before', async () => {
     const { clock, c24, hear, said } = channel({ protocol: 'bidirectional', rate: 0 })

@@ -51,6 +51,11 @@ describe('simulated C24: receive area', () => {
     assert.deepStrictEqual(lengths({ unit: 'byte' }), Array(5).fill([511, 'count', 511]))
     assert.deepStrictEqual(lengths({ count: 500, end: '' }), Array(3).fill([1000, 'count', 500]))
   })
+  const channelWithOdd = () => {
+    const { c24, hear } = channel({ first: '02', last: '03', rate: 0 })
+    hear('\x02ABC\x03')
+    return hex(c24.memory.words(0x600, 3))
+  }
   it('user frames: what comes before is skipped, an odd byte is lost in word units', () => {
     const { c24, hear } = channel({ first: '02', last: '03 0D' })
     hear('noise\x02ABC\x03\r\x02DE\x03F\x03\r')
@@ -61,20 +66,28 @@ describe('simulated C24: receive area', () => {
         ['DE\x03F', 'frame']
       ]
     )
+    // all words stand there, but not all are counted
+    assert.strictEqual(channelWithOdd(), '0001 4241 0043')
     assert.strictEqual(c24.counts.skipped, 5)
   })
-  it('transparent code and ASCII-binary', () => {
+  it('transparent code', () => {
     const { c24, hear } = channel({ transparent: '10', flow: 'dc', unit: 'byte' })
     hear(bytes('41 10 13 10 10 10 11 42 0D 0A'))
     assert.strictEqual(shown(c24.messages[0].bytes), '41 13 10 11 42')
     assert.deepStrictEqual([c24.counts.halted, c24.counts.resumed], [0, 0])
-    const other = channel({ asciiBinary: true })
-    other.hear(`41FF0D${CRLF}41F${CRLF}4g${CRLF}`)
-    assert.deepStrictEqual(
-      other.c24.messages.map(message => shown(message.bytes)),
-      ['41 FF 0D']
-    )
-    assert.strictEqual(other.c24.counts.conversionErrors, 2)
+  })
+  it('ASCII-binary: the complete code is converted, too, user frames are not; half a byte hides it', () => {
+    const taken = (settings, sent) => {
+      const { c24, hear } = channel({ asciiBinary: true, ...settings })
+      hear(sent)
+      return [c24.messages.map(message => shown(message.bytes)), c24.counts.conversionErrors]
+    }
+    assert.deepStrictEqual(taken({}, '41FF0D0D0A420D0A'), [['41 FF 0D', '42'], 0])
+    assert.deepStrictEqual(taken({ storeEnd: true }, '410D0A'), [['41 0D 0A'], 0])
+    assert.deepStrictEqual(taken({}, '4g0D0A410D0A'), [['41'], 1])
+    assert.deepStrictEqual(taken({}, '410D00A0D0A'), [[], 0])
+    assert.deepStrictEqual(taken({ first: '02', last: '03', unit: 'byte' }, '\x0241FF0D\x03'), [['41 FF 0D'], 0])
+    assert.deepStrictEqual(taken({ end: '', count: 2 }, '4142434445464748'), [['41 42 43 44', '45 46 47 48'], 0])
   })
 
   // protocols page: a peer that pauses up to 50 ms at 9600 bit/s needs 41

@@ -21,7 +21,8 @@ const LISTENERS = {
         'unit',
         'sumCheck'
       ],
-      ...['flow', 'transparent', 'room', 'stallLimit', 'timer0', 'tornEnd', 'priority']
+      ...['padEven', 'flow', 'transparent', 'room', 'stallLimit', 'timer0', 'tornEnd'],
+      ...['priority', 'repeatAfter', 'repeatWithin']
     ]
   },
   'incon-link': { title: 'INCON', shared: ['most', 'silence', 'checked', 'encoding'] }

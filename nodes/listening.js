@@ -43,7 +43,7 @@ const createSender = session => {
 
 /** A message of the device as one of the flow. */
 const messageOf = (message, { label, simulated }) => {
-  const { value, bytes, count, complete, reason, timestamp, number, lost } = message
+  const { value, bytes, count, complete, reason, timestamp, number, lost, afterOpen, repeated } = message
   return {
     topic: label,
     payload: value,
@@ -51,6 +51,8 @@ const messageOf = (message, { label, simulated }) => {
     bytes: bytes.length,
     complete,
     ...(complete ? {} : { reason }),
+    ...(afterOpen ? { afterOpen } : {}),
+    ...(repeated ? { repeated } : {}),
     // of checked lines
     ...(typeof number === 'number' ? { number, lost } : {}),
     quality: complete ? 'good' : 'bad',

@@ -148,7 +148,12 @@ const PROPERTIES = {
     most: number(16384, 1, 65536),
     sumCheck: flag(true),
     ackTimeout: number(1000, 10, 600000),
-    priority: choice('c24', 'c24', 'us')
+    attempts: number(3, 1, 20),
+    repeatUnanswered: flag(),
+    priority: choice('c24', 'c24', 'us', 'both'),
+    repeats: choice('mark', 'mark', 'drop'),
+    repeatAfter: number(0, 0, 3600000),
+    repeatWithin: number(10000, 0, 3600000)
   },
   'incon-link': {
     name: text(),
@@ -232,12 +237,18 @@ const TRANSPORTS = { path: 'serial', host: 'tcp', port: 'tcp' }
 const unused = (mode, name) => (mode === 'read' && name in WRITING) || (mode === 'write' && name in READING)
 
 const UNIDIRECTIONAL = ['framing', 'end', 'count', 'first', 'last', 'timer0', 'tornEnd']
+const BIDIRECTIONAL = [
+  ...['sumCheck', 'ackTimeout', 'attempts', 'repeatUnanswered', 'priority'],
+  ...['repeats', 'repeatAfter', 'repeatWithin']
+]
 const FRAMINGS = { end: 'end', count: 'count' }
 
 const isOn = value => value === true || value === 'true'
 
-const unusedByC24 = (name, { framing = 'end', bidirectional = false }) =>
-  isOn(bidirectional) ? UNIDIRECTIONAL.includes(name) : Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing
+const unusedByC24 = (name, { framing = 'end', bidirectional = false }) => {
+  if (isOn(bidirectional)) return UNIDIRECTIONAL.includes(name)
+  return BIDIRECTIONAL.includes(name) || (Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing)
+}
 
 /**
  * Whether a property counts at all with the others as they are.

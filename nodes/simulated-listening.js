@@ -47,6 +47,7 @@ const obey = (machine, bytes, { format }) => {
 }
 
 const FLOWS = { none: 'none', dc: 'dc', driver: 'dtr' }
+const CROSSING = { c24: 'send', us: 'receive', both: 'both' }
 const PROTOCOLS = { true: 'bidirectional', false: 'non-procedure' }
 
 /** The module as it has to be set for what the node expects. */
@@ -64,7 +65,8 @@ const moduleSettings = (settings, { baudRate, flowControl }) => {
     flow: flow === 'driver' && flowControl !== 'rtscts' ? 'none' : FLOWS[flow],
     transparent: transparent.slice(0, 2),
     asciiBinary: settings.asciiBinary,
-    sumCheck: settings.sumCheck
+    sumCheck: settings.sumCheck,
+    simultaneous: CROSSING[settings.priority]
   }
 }
 

@@ -146,7 +146,12 @@ var nxlineSerialPlc = (() => {
           most: number(16384, 1, 65536),
           sumCheck: flag(true),
           ackTimeout: number(1e3, 10, 6e5),
-          priority: choice("c24", "c24", "us")
+          attempts: number(3, 1, 20),
+          repeatUnanswered: flag(),
+          priority: choice("c24", "c24", "us", "both"),
+          repeats: choice("mark", "mark", "drop"),
+          repeatAfter: number(0, 0, 36e5),
+          repeatWithin: number(1e4, 0, 36e5)
         },
         "incon-link": {
           name: text(),
@@ -206,9 +211,16 @@ var nxlineSerialPlc = (() => {
       var TRANSPORTS = { path: "serial", host: "tcp", port: "tcp" };
       var unused = (mode, name) => mode === "read" && name in WRITING || mode === "write" && name in READING;
       var UNIDIRECTIONAL = ["framing", "end", "count", "first", "last", "timer0", "tornEnd"];
+      var BIDIRECTIONAL = [
+        ...["sumCheck", "ackTimeout", "attempts", "repeatUnanswered", "priority"],
+        ...["repeats", "repeatAfter", "repeatWithin"]
+      ];
       var FRAMINGS = { end: "end", count: "count" };
       var isOn = (value) => value === true || value === "true";
-      var unusedByC24 = (name, { framing = "end", bidirectional = false }) => isOn(bidirectional) ? UNIDIRECTIONAL.includes(name) : Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing;
+      var unusedByC24 = (name, { framing = "end", bidirectional = false }) => {
+        if (isOn(bidirectional)) return UNIDIRECTIONAL.includes(name);
+        return BIDIRECTIONAL.includes(name) || Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing;
+      };
       var applies = (type, name, config) => {
         if (type === "melsec-c24") return !unusedByC24(name, config);
         if (type === "plc-line") return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || "serial");
@@ -240,7 +252,8 @@ var nxlineSerialPlc = (() => {
               "unit",
               "sumCheck"
             ],
-            ...["flow", "transparent", "room", "stallLimit", "timer0", "tornEnd", "priority"]
+            ...["padEven", "flow", "transparent", "room", "stallLimit", "timer0", "tornEnd"],
+            ...["priority", "repeatAfter", "repeatWithin"]
           ]
         },
         "incon-link": { title: "INCON", shared: ["most", "silence", "checked", "encoding"] }

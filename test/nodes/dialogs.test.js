@@ -119,7 +119,8 @@ describe('validators', () => {
   const all = { ...regulator, id: 'all', line: 'other', name: 'All', station: '0', broadcast: true, tags: [] }
   const seven = { id: 'seven', type: 'plc-line', transport: 'serial', path: '/dev/ttyS8', dataBits: '7' }
   const unnamed = { id: 'unnamed', type: 'nx-config', line: 'line', name: '', station: '7' }
-  const { types } = loadDialogs({ nodes: [line, plc, unnamed, regulator, readOnly, all, seven] })
+  const machine = { id: 'machine', type: 'incon-link', line: 'spoken', name: 'Machine', most: '256' }
+  const { types } = loadDialogs({ nodes: [line, plc, unnamed, regulator, readOnly, all, seven, machine] })
   const judge = (type, name, value, node = {}) =>
     types[type].defaults[name].validate.call({ id: 'own', ...node }, value, {})
 
@@ -210,6 +211,38 @@ describe('validators', () => {
     ['chino-regulator', 'target', '300001', /^300001: can only be read/, { regulator: 'regulator', mode: 'write' }],
     ['chino-regulator', 'target', '101001', /can only be read/, { regulator: 'regulator', mode: 'both' }],
     ['chino-regulator', 'target', '001001', true, { regulator: 'regulator', mode: 'both' }],
+    ['nx-config', 'station', '9', /^Machine listens on this line/, { line: 'spoken' }],
+    ['chino-config', 'station', '9', /^Machine listens on this line/, { line: 'spoken' }],
+    ['incon-link', 'line', 'line', /^Oven on this line is asked/, { type: 'incon-link', line: 'line' }],
+    ['incon-link', 'line', 'free', true, { type: 'incon-link', line: 'free' }],
+    ['incon-link', 'line', 'spoken', true, { type: 'incon-link', line: 'spoken', most: 256 }],
+    [
+      'incon-link',
+      'line',
+      'spoken',
+      /Machine .*most is 100 and 256/,
+      { type: 'incon-link', line: 'spoken', most: 100 }
+    ],
+    ['melsec-c24', 'line', 'spoken', /the one is MELSEC C24/, { type: 'melsec-c24', line: 'spoken' }],
+    ['incon-link', 'most', '1', /2 to 4096/],
+    ['melsec-c24', 'end', '0D 0A', true],
+    ['melsec-c24', 'end', '0d0a', true],
+    ['melsec-c24', 'end', '', /end code/],
+    ['melsec-c24', 'end', '', true, { last: '03' }],
+    ['melsec-c24', 'end', '', true, { framing: 'count' }],
+    ['melsec-c24', 'end', '', true, { bidirectional: true }],
+    ['melsec-c24', 'end', 'CR', /Bytes in hex/],
+    ['melsec-c24', 'end', '0D 0', /Bytes in hex/],
+    ['melsec-c24', 'end', '0D 0A 0D', /0 to 2 bytes/],
+    ['melsec-c24', 'end', '${END}', true],
+    ['melsec-c24', 'count', 0, true],
+    ['melsec-c24', 'count', 0, /number of bytes/, { framing: 'count' }],
+    ['melsec-c24', 'gap', 0, true, { framing: 'end' }],
+    ['melsec-c24', 'gap', 0, /pause/, { framing: 'gap' }],
+    ['melsec-c24', 'gap', 0, true, { framing: 'gap', bidirectional: true }],
+    ['melsec-c24', 'flow', 'dc', true],
+    ['melsec-c24', 'flow', 'dc', /bidirectional/, { bidirectional: true }],
+    ['melsec-c24', 'transparent', '10', true],
     ['chino-regulator', 'target', '400001', /^CHINO 12 is read-only/, { regulator: 'readOnly', mode: 'both' }]
   ]
   for (const [type, name, value, expected, node] of cases) {

@@ -3,15 +3,18 @@
 /** The public door: everything that nodes and programs use. No logic here. */
 
 const { CODES, PlcError } = require('./error')
+const { fromBufferMemory, toBufferMemory } = require('./codec/melsec/buffer-memory')
 const { areaMap } = require('./codec/nx/areas')
 const { describeAddress, formatAddress, parseAddress } = require('./codec/nx/address')
 const { PRIORITY, createPool, lineSettings, listPorts } = require('./line')
+const { createC24Port } = require('./device/c24-port')
 const { createChinoRegulator } = require('./device/chino-regulator')
 const { diagnose } = require('./device/diagnose')
 const { createInconLink, openInconLink } = require('./device/incon-link')
 const { mixedConflict } = require('./device/mixed')
 const { createNxPlc } = require('./device/nx-plc')
 const { openChinoRegulator, openNxPlc } = require('./device/open')
+const { openC24Port } = require('./device/open-c24')
 const { masterIdsOf } = require('./device/settings')
 const { createThrottle } = require('./device/throttle')
 const { csvWarnings, tagsFromCsv, tagsToCsv } = require('./tag/csv')
@@ -28,6 +31,7 @@ module.exports = {
   PRIORITY,
   PlcError,
   areaMap,
+  createC24Port,
   createChinoRegulator,
   createInconLink,
   createNxPlc,
@@ -39,6 +43,7 @@ module.exports = {
   diagnose,
   entriesOf,
   formatAddress,
+  fromBufferMemory,
   itemsOf,
   lineSettings,
   listPorts,
@@ -47,6 +52,7 @@ module.exports = {
   mixedConflict,
   modbusNotation,
   nxNotation,
+  openC24Port,
   openChinoRegulator,
   openInconLink,
   openNxPlc,
@@ -54,5 +60,6 @@ module.exports = {
   parseItem,
   parseType,
   tagsFromCsv,
-  tagsToCsv
+  tagsToCsv,
+  toBufferMemory
 }

@@ -83,7 +83,8 @@ class Line extends EventEmitter {
       use: this.#use,
       late: fact => this.#late(fact),
       answered: () => this.#answered(),
-      troubled: error => this.#troubled(error)
+      troubled: error => this.#troubled(error),
+      check: () => this.#connection.check(0)
     }
   }
 
@@ -105,6 +106,11 @@ class Line extends EventEmitter {
   /** Times of this wire in ms: `{ character, gap, slack }`. */
   get times() {
     return this.#times
+  }
+
+  /** That of the serial driver: `none`, `rtscts`, `xonxoff`. */
+  get flowControl() {
+    return this.#settings.flowControl
   }
 
   /** Counters since the line was made; see docs/nodes.md. */

@@ -188,6 +188,32 @@ describe('INCON link', () => {
     assert.ok(bench.got.every(({ count }) => count <= 256))
   })
 
+  it('redeployed in the middle of lines: each settles once, no line is cut, none is told as another', async () => {
+    open({ wire: { collisions: false }, sim: { scan: 5 } })
+    bench.device.close()
+    await bench.run(bench.lease.release())
+    const settled = []
+    for (let n = 0; n < 60; n++) {
+      const lease = bench.pool.open(bench.settings, { id: 'a', name: 'again' })
+      const link = createInconLink({ lease, clock: bench.clock })
+      const send = line => link.send(line).then(({ outcome: word }) => settled.push([line, word]))
+      const outcome = Promise.all([send(`LINE ${n}`), send(`LINE ${n} again`)])
+      bench.controller.say(`EVENT ${n}`)
+      await bench.clock.advance(n * 1.7)
+      link.close()
+      await bench.run(lease.release())
+      await bench.run(outcome)
+      await bench.clock.advance(100)
+    }
+    await bench.clock.drain()
+    assert.strictEqual(settled.length, 120)
+    // what had begun goes out to its end
+    const begun = settled.filter(([, word]) => word !== 'failed').map(([line]) => line)
+    assert.deepStrictEqual(bench.seen(), begun)
+    assert.deepStrictEqual([...new Set(settled.map(([, word]) => word))].sort(), ['failed', 'sent', 'unknown'])
+    assert.deepStrictEqual(bench.pool.lines(), [])
+  })
+
   describe('checked lines', () => {
     const sim = { scan: 5, checked: true }
     const link = { checked: true }

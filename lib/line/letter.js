@@ -83,9 +83,10 @@ class Letter {
     return this.piece !== null && !(this.piece.taken && this.#gone(now, character) === this.wire.length)
   }
 
-  /** Bytes of the message that have left; 0: none. @param {number} now @param {number} character ms of one */
+  /** Bytes of the message that have left; 0: the port got none of them. @param {number} now @param {number} character ms of one */
   sent(now, character) {
-    return Math.min(this.length, Math.max(0, this.#gone(now, character) - this.#before))
+    const gone = this.#gone(now, character) - this.#before
+    return Math.min(this.length, Math.max(this.given > 0 ? 1 : 0, gone))
   }
 
   /** Bytes of the message that the port has got. */

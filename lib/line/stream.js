@@ -6,6 +6,9 @@ const { OwnEcho } = require('./own-echo')
 const { copyOf } = require('./run')
 const { Silence } = require('./silence')
 
+/** A serial port is asked so often whether it is still there, ms: nobody who waits for an answer would notice. */
+const WATCH = 5000
+
 /**
  * A line that listens: bytes become messages by one framing, which all its listeners share; what is sent goes through the outbox.
  */
@@ -18,6 +21,7 @@ class Stream {
   #outbox
   #echo
   #silence
+  #watch = null
   #listeners = []
   /** @type {any} */
   #framing = null
@@ -32,7 +36,7 @@ class Stream {
    * @param {{ name: string, clock: any, settings: any, times: any, recorder: any, memories: Map<any, any>,
    *   write: (bytes: Buffer, done: (error?: any) => void) => void }} parts
    * @param {{ refusal: () => any, rejection: () => any, isOpen: () => boolean, answered: () => void, troubled: (error: any) => void,
-   *   use: import('./use').Use }} host the line
+   *   check: () => void, use: import('./use').Use }} host the line
    */
   constructor(parts, host) {
     const { clock, settings, recorder } = parts
@@ -98,6 +102,14 @@ class Stream {
     flow.stoppedAt = flow.on ? this.#flow.stoppedAt : Infinity
     this.#flow = flow
     this.#outbox.use(flow)
+    if (this.#settings.transport === 'serial') this.#look()
+  }
+
+  #look() {
+    this.#watch = this.#clock.setTimer(() => {
+      this.#host.check()
+      this.#look()
+    }, WATCH)
   }
 
   #leave(listener) {
@@ -113,6 +125,7 @@ class Stream {
   /** Nobody will listen: what has come of a message is told, once. */
   #finish() {
     this.#silence.stop()
+    this.#clock.clearTimer(this.#watch)
     const splitter = this.#splitter
     this.#splitter = null
     this.#framing = null

@@ -54,7 +54,8 @@ describe('listening line: torn messages', () => {
     await bench.clock.advance(1.5 * CHARACTER)
     bench.wire.unplug()
     const error = await result
-    assert.deepEqual([error.details.sent, error.details.of], [0, 5])
+    // a byte that the port has got may be on its way
+    assert.deepEqual([error.details.sent, error.details.of], [1, 5])
     // so it is torn still
     await bench.clock.advance(1000)
     await bench.run(bench.lease.send(bytes('third;')))

@@ -1,12 +1,12 @@
 'use strict'
 
-/** The examples for regulators run as they were imported. */
+/** The examples for regulators and for lines that are listened to run as they were imported. */
 
 const assert = require('node:assert/strict')
 const { until } = require('../support/node-red.js')
 const { find, load, startBench } = require('./bench.js')
 
-describe('examples for regulators', function () {
+describe('examples for regulators and free messages', function () {
   this.timeout(40000)
   /** @type {Awaited<ReturnType<typeof startBench>>} */
   let bench
@@ -90,5 +90,37 @@ describe('examples for regulators', function () {
     await bench.deploy(flow, node => (node.id === zone ? { ...node, station: 0xe2 } : node))
     const said = await bench.red.next(find(flow, 'debug', 'errors').id, value => value.code === 'MIXED_LINE')
     assert.match(said.message, /Zone 2.*PLC \(station 1\)/)
+  })
+
+  const connected = flow =>
+    until(() => bench.red.status.get(find(flow, 'mqtt in').id)?.fill === 'green', { what: 'the broker' })
+
+  it('13 words of the C24 to MQTT, a recipe from MQTT or a button to the C24', async () => {
+    const flow = await bench.deploy(load('13'))
+    await bench.subscribe(['plant/press/#'])
+    const { value } = await bench.hear('plant/press/state')
+    assert.deepEqual(Object.keys(value), ['pieces', 'recipe', 'temperature', 'set', 'timestamp'])
+    assert.deepEqual([value.recipe, value.set], [1, 180])
+    await connected(flow)
+    await bench.client.publishAsync('plant/press/recipe/set', '{ "recipe": 7, "set": 215 }')
+    const { value: answer } = await bench.hear('plant/press/recipe/answer')
+    assert.deepEqual([answer.outcome, answer.bytes], ['sent', 8])
+    await bench.hear('plant/press/state', ({ recipe, set }) => recipe === 7 && set === 215)
+    await bench.client.publishAsync('plant/press/state', '', { retain: true })
+  })
+
+  it('14 events of the machine to MQTT, a program name to the machine', async () => {
+    const flow = await bench.deploy(load('14'))
+    await bench.subscribe(['plant/machine/#'])
+    const { value } = await bench.hear('plant/machine/events')
+    assert.equal(typeof value.timestamp, 'number')
+    await connected(flow)
+    await bench.red.inject(find(flow, 'inject', 'O1234').id)
+    const { value: answer } = await bench.hear('plant/machine/program/answer')
+    assert.equal(answer.outcome, 'sent')
+    await bench.hear('plant/machine/events', ({ event }) => event === 'PROGRAM O1234 SELECTED')
+    await bench.red.inject(find(flow, 'inject', 'a name with a Hangul letter: refused').id)
+    const refused = await bench.hear('plant/machine/program/answer', ({ outcome }) => outcome === 'refused')
+    assert.equal(refused.value.code, 'BAD_VALUE')
   })
 })

@@ -49,13 +49,16 @@ const flowDifference = (one, other) => {
   return key === undefined ? '' : `${key} ${mine[key]} and ${theirs[key]}`
 }
 
+/** Characters until the stop has come: the one that the other side is sending, and DC3 itself. */
+const STOP = 2
+
 /**
  * Bytes that may be on their way at once: the stop comes when `room` bytes are free, and the adapter brings it late.
  * @throws {PlcError} BAD_SETTING naming room and speed
  */
 const pieceSize = ({ flow, transparent, room, latency }, { flowControl, baudRate }) => {
   if (flow !== 'dc' || flowControl !== 'none') return Infinity
-  const most = Math.floor(room - (baudRate / 10000) * latency)
+  const most = Math.floor(room - STOP - (baudRate / 10000) * latency)
   // a transparent code and what follows it are never parted
   const least = transparent === null ? 1 : 2
   if (most >= least) return most

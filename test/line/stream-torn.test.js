@@ -100,7 +100,7 @@ describe('listening line: released and closed', () => {
       assert.deepEqual(
         errors.map(({ code, details }) => [code, details.sent, details.of]),
         [
-          ['LINE_CLOSED', flow === 'dc' ? 48 : 91, 91],
+          ['LINE_CLOSED', flow === 'dc' ? 46 : 91, 91],
           ['LINE_CLOSED', 0, 2]
         ]
       )
@@ -136,7 +136,7 @@ describe('listening line: released and closed', () => {
     const third = other.send(bytes('c;'))
     await bench.clock.advance(5)
     await bench.run(bench.lease.release())
-    assert.deepEqual([(await first).details.sent, (await second).details.sent], [48, 0])
+    assert.deepEqual([(await first).details.sent, (await second).details.sent], [46, 0])
     await bench.run(third)
     assert.equal(sentTexts(bench).join(''), 'x'.repeat(100) + ';c;')
     bench.wire.handlers.data(bytes('q;'))

@@ -4,6 +4,7 @@
  * Long runs that are not part of every test run.
  *   npm run endurance -- redeploys [1000]    so many redeploys and reconnects in a real Node-RED; nothing may be left behind
  *   npm run endurance -- mixed [600]         so many seconds of an NX PLC and three regulators on one paced line; no value may be wrong
+ *   npm run endurance -- c24 [10]            so many MB to a simulated C24 that reads slowly, in virtual time; nothing may be lost
  */
 
 const path = require('node:path')
@@ -42,6 +43,19 @@ const RUNS = {
     for (const each of [...wrong, ...failures].slice(0, 20)) print(JSON.stringify(each))
     if (wrong.length || failures.length) throw new Error(`${wrong.length} wrong values, ${failures.length} failures`)
     print('no value was wrong, nothing failed')
+  },
+
+  /** @param {string} [megabytes] */
+  async c24(megabytes = '10') {
+    const bytes = whole(megabytes, 'megabytes') * 1e6
+    const { runFlow } = require(path.join(__dirname, '..', 'test', 'simulation', 'c24-flow.js'))
+    for (const flow of ['dc', 'dtr']) {
+      const { lost, wrong, counts, ...run } = await runFlow({ flow, bytes, latency: 16 })
+      const { sent, seconds } = run
+      print(`${flow}: ${JSON.stringify({ sent, bytes: run.bytes, seconds, lost, wrong, counts })}`)
+      if (lost || wrong || counts.discarded) throw new Error(`${flow}: ${lost} messages were lost`)
+    }
+    print('nothing was lost')
   }
 }
 

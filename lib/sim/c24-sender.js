@@ -2,12 +2,10 @@
 
 const { bidirectionalMessage, freeMessage } = require('./c24-bytes')
 
-// the module looks at transmission control between its bytes: what waits for the peer's stop, and what its own stop waits for
-const PIECE = 4
 const MOST_WAITING = 1000
 
 /**
- * Sending side: messages one after the other, in pieces so that DC1/DC3 of both sides take effect inside a message.
+ * Sending side: messages one after the other, byte by byte, so that DC1/DC3 of both sides take effect inside a message.
  *
  * @param {any} settings of c24-settings.js
  * @param {{ counts: any, memory: any, done: (record: any) => void }} out
@@ -45,6 +43,8 @@ const emptyState = () => ({
   current: /** @type {any} */ (null),
   allowed: true,
   busy: false,
+  /** when the next byte is due, ms; null: a pause comes to an end now */
+  due: /** @type {number | null} */ (null),
   timer: /** @type {any} */ (null)
 })
 
@@ -75,17 +75,28 @@ function next(c24) {
   if (part.after > 0) {
     const { after } = part
     part.after = 0
+    c24.due = null
     return pause(c24, after)
   }
-  const piece = part.bytes.subarray(0, PIECE)
-  part.bytes = part.bytes.subarray(PIECE)
-  if (part.bytes.length === 0) current.parts.shift()
-  pause(c24, speak(c24, piece) - c24.settings.clock.now())
+  transmit(c24, part)
 }
 
-function speak(c24, bytes) {
+/** One byte; on a real clock, whose timers are late, as many as should have begun by now. */
+function transmit(c24, part) {
+  const { clock, byteMs } = c24.settings
+  const now = clock.now()
+  const at = c24.due ?? now
+  const count = 1 + Math.max(0, Math.floor((now - at) / byteMs))
+  const piece = part.bytes.subarray(0, count)
+  part.bytes = part.bytes.subarray(count)
+  if (part.bytes.length === 0) c24.current.parts.shift()
+  c24.due = Math.max(at + piece.length * byteMs, speak(c24, piece, at))
+  pause(c24, c24.due - now)
+}
+
+function speak(c24, bytes, at = c24.settings.clock.now()) {
   c24.out.counts.bytesOut += bytes.length
-  return c24.send(bytes, { faults: false }) ?? c24.settings.clock.now()
+  return c24.send(bytes, { faults: false, at }) ?? at
 }
 
 function begin(c24) {
@@ -107,6 +118,7 @@ function pause(c24, ms) {
     () => {
       c24.busy = false
       next(c24)
+      if (!c24.busy) c24.due = null
     },
     ms,
     { quiet: !c24.settings.onSent }

@@ -87,10 +87,10 @@ function join(wire, station) {
 }
 
 /** @returns {number} when the last byte has passed; now, where nothing goes out */
-function speak(wire, party, { bytes, faults = true }) {
-  const now = wire.clock.now()
+function speak(wire, party, { bytes, faults = true, at }) {
+  const now = at ?? wire.clock.now()
   if (party.off || !wire.parties.has(party)) return now
-  const pieces = faults ? faulty(wire, party, bytes) : [{ bytes }]
+  const pieces = faults ? faulty(wire, party, bytes) : [{ bytes, at }]
   return pieces.reduce((end, piece) => Math.max(end, later(wire, party, piece)), now)
 }
 
@@ -166,9 +166,9 @@ function serve(wire, party, job) {
   clock.setTimer(answer, due - clock.now(), { quiet: true })
 }
 
-function later(wire, party, { bytes, after = 0 }) {
+function later(wire, party, { bytes, after = 0, at = /** @type {number | undefined} */ (undefined) }) {
   const { clock } = wire
-  const send = () => transmit(wire, party, { bytes, at: clock.now() })
+  const send = () => transmit(wire, party, { bytes, at: at ?? clock.now() })
   if (!(after > 0)) return send()
   clock.setTimer(send, after, { quiet: true })
   return clock.now() + after + bytes.length * wire.byteMs
@@ -196,7 +196,7 @@ function connect(wire, handlers) {
  * @property {number} byteMs wire time of one byte
  * @property {{ frames: number, bytes: number, collisions: number }} counts
  * @property {(station: any) => void} add a station (nx-plc.js, chino-regulator.js, melsec-c24.js). One that speaks by itself has `speak(send,
- *   port)`, called once: `send(bytes, { faults })` → when the last byte has passed; `port`: `faulty(bytes)` → [{ bytes, after }] that go out
+ *   port)`, called once: `send(bytes, { faults, at })` → when the last byte has passed (`at`: when they were due, where a timer is late); `port`: `faulty(bytes)` → [{ bytes, after }] that go out
  *   instead, `idleAt()`, `cts(on)`. One that may react to any byte has `appetite()`: how many bytes it can hear at once
  * @property {(number: number) => void} remove what it still has to answer goes out
  * @property {() => any[]} stations

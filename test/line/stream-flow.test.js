@@ -177,6 +177,44 @@ describe('listening line: DC1 and DC3', () => {
     assert.deepEqual([bench.lease.line.stats().tornWrites, bench.wire.connects], [1, 1])
   })
 
+  it('said again, a stop does not begin anew; each message waits its own time', async () => {
+    const bench = await control({ stallLimit: 1000 })
+    says(bench, DC3)
+    const first = failure(bench.lease.send(bytes('a;')))
+    for (let n = 0; n < 9; n++) {
+      await bench.clock.advance(100)
+      says(bench, DC3)
+    }
+    await bench.run(first)
+    near(bench.clock.now(), 1001)
+    const second = failure(bench.lease.send(bytes('b;')))
+    await bench.run(second)
+    near(bench.clock.now(), 2001)
+  })
+
+  it('an answer that comes before all of the message has gone out is none', async () => {
+    const bench = await control()
+    const options = { match: ({ kind }) => kind === 'ack', timeout: 100 }
+    const sent = bench.lease.send(bytes('x'.repeat(100)), options)
+    await bench.clock.advance(10)
+    says(bench, '+;')
+    assert.deepEqual(bench.texts, ['+'])
+    await bench.clock.advance(120)
+    says(bench, '+;')
+    near((await bench.run(sent)).ms, 130)
+    assert.deepEqual(bench.texts, ['+'])
+  })
+
+  it('an answer that could not go out is not sent over the next connection', async () => {
+    const bench = await control({ reply: () => bytes('ACK') })
+    says(bench, `${DC3}q;`)
+    bench.wire.unplug()
+    await bench.clock.advance(1000)
+    await bench.run(bench.lease.send(bytes('a;')))
+    says(bench, `${DC3}${DC1}`)
+    assert.deepEqual(sentTexts(bench), ['a;'])
+  })
+
   it('many stops and goes lose and double nothing', async () => {
     const bench = await control()
     const texts = Array.from({ length: 20 }, (_, n) => `${n}:`.padEnd(30 + 7 * n, 'abcdefg') + ';')

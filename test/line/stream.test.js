@@ -172,6 +172,12 @@ describe('listening line: messages', () => {
     await bench.clock.advance(500)
     says(bench, 'x;')
     assert.deepEqual(texts, ['hello', 'hello', 'x'])
+
+    // nor does one that is damaged
+    bench.lease.send(bytes('abc;'))
+    says(bench, 'aXc;')
+    says(bench, 'bc;')
+    assert.deepEqual(texts.slice(3), ['Xc', 'bc'])
   })
 })
 
@@ -355,6 +361,11 @@ describe('listening line: sending', () => {
     await bench.run(Promise.all(rest))
     assert.deepEqual(sentTexts(bench), ['b;', 'c;'])
     assert.equal(bench.lease.line.stats().queueFull, 1)
+  })
+
+  it('a deadline is for waiting, not for a message that goes out already', async () => {
+    const bench = await opened()
+    await bench.run(bench.lease.send(bytes('x'.repeat(100)), { deadline: 5 }))
   })
 
   it('refuses what cannot be sent', async () => {

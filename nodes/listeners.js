@@ -1,7 +1,7 @@
 'use strict'
 const { PlcError } = require('../lib/index.js')
 const { portConflict } = require('./listening-rules')
-const { createPort } = require('./listening-settings')
+const { createPort, isSamePort } = require('./listening-settings')
 const { onStarted } = require('./started')
 
 /** Who listens on a line: a seat for each node, with its port. */
@@ -43,9 +43,6 @@ const portOf = seat => ({
     }
   }
 })
-
-const same = (one, other) =>
-  one.label === other.label && JSON.stringify(one.settings) === JSON.stringify(other.settings)
 
 /** The seats of a line and how they are given back. */
 const createSeats = line => {
@@ -92,7 +89,7 @@ const checkUse = (line, seats, own) => {
 const seatFor = (line, seats, own) => {
   checkUse(line, seats, own)
   const before = seats.get(own.id)
-  if (before && same(before, own)) return before
+  if (before && isSamePort(before, own)) return before
   if (before) seats.drop(before)
   seats.dropOrphans(seat => portConflict(own, seat) !== '')
   const first = seats.all().length === 0

@@ -1,6 +1,18 @@
 'use strict'
 const assert = require('node:assert/strict')
-const { TAB, helper, load, openMixedWire, lineNode, ON_TAB, probe, until, zoneNode, regulator } = require('./bench')
+const {
+  TAB,
+  catcher,
+  helper,
+  load,
+  openMixedWire,
+  lineNode,
+  ON_TAB,
+  probe,
+  until,
+  zoneNode,
+  regulator
+} = require('./bench')
 const { createLine, serveOnTcp } = require('../../lib/sim')
 const { sharedPool } = require('../../nodes/pool')
 const { statusOf } = require('../../nodes/status')
@@ -84,11 +96,11 @@ describe('listening nodes and their line', () => {
   })
 
   for (const type of ['full', 'flows', 'nodes']) {
-    it(`deploy "${type}": a node that moved goes on; one port, no message twice`, async () => {
+    it(`deploy "${type}": a changed node goes on; one port, no message twice`, async () => {
       await load([line(), link()])
       await isOpen()
       for (let round = 0; round < 3; round++) {
-        await helper.setFlows([TAB, line(), link({ x: round + 10 }), probe('out')], type)
+        await helper.setFlows([TAB, line(), link({ acceptRetained: round % 2 === 0 }), probe('out')], type)
         const seen = heard()
         await isOpen()
         controller().say(`R${round}`)
@@ -100,18 +112,32 @@ describe('listening nodes and their line', () => {
   }
 
   it('what comes while a deploy makes the node anew is neither lost nor torn', async () => {
-    await load([line({ baudRate: '9600' }), link()])
+    const slow = line({ baudRate: '9600' })
+    const { out } = await load([slow, link()])
     await isOpen()
-    const { counts } = controller()
-    for (let n = 0; n < 4; n++) controller().say(`LINE ${n} ${'x'.repeat(20)}`)
-    await until(() => counts.lines > 0, 'the first line on its way')
-    await helper.setFlows([TAB, line({ baudRate: '9600' }), link({ x: 77 }), probe('out')], 'nodes')
+    const module = controller()
+    const text = n => `LINE ${n} ${'x'.repeat(20)}`
+    for (let n = 0; n < 4; n++) module.say(text(n))
+    await until(() => module.counts.lines === 2, 'the second line on its way')
+    const before = helper.getNode('link')
+    await helper.setFlows([TAB, slow, link({ access: 'write' }), probe('out')], 'nodes')
+    assert.notEqual(helper.getNode('link'), before, 'it was made anew')
+    assert.equal(controller(), module)
+    const lines = () => out.map(({ payload }) => payload).filter(payload => /x/.test(payload))
+    await until(() => lines().includes(text(3)), 'the last line')
+    assert.deepEqual(lines(), [0, 1, 2, 3].map(text))
+  })
+
+  it('two listeners that get other settings in one deploy do not stand in each other’s way', async () => {
+    const both = more => [link(more), link({ id: 'link2', name: 'two', ...more })]
+    const { caught } = await load([line(), ...both({})])
+    await isOpen()
+    await helper.setFlows([TAB, line(), ...both({ most: '100' }), probe('out'), probe('caught'), catcher], 'nodes')
     const seen = heard()
-    await until(() => seen.some(payload => payload.startsWith('LINE 3')), 'the last line')
-    assert.ok(
-      seen.every(payload => /^LINE \d x{20}$|^[A-Z0-9 ]+$/.test(payload)),
-      JSON.stringify(seen)
-    )
+    await isOpen()
+    controller().say('BOTH')
+    await until(() => seen.filter(payload => payload === 'BOTH').length === 2, 'it of both')
+    assert.equal(caught.length, 0)
   })
 
   it('other settings: the port is opened anew with them', async () => {

@@ -104,7 +104,7 @@ class LineSplitter {
   /** @param {Reason} [reason] why it is not a whole line @returns {Message[]} */
   #close(reason) {
     const line = this.#line
-    if (line[line.length - 1] === CR && reason !== 'full') line.pop()
+    if (line[line.length - 1] === CR) line.pop()
     this.#line = []
     this.#isTail = false
     return line.length > 0 ? [this.#read(Buffer.from(line), reason)] : []

@@ -54,6 +54,7 @@ describe('INCON lines received', () => {
     assert.deepStrictEqual(split(`${long}\r\nB\r\n`), [long, 'B'])
     assert.deepStrictEqual(split(`${long}yz\r\nB\r\n`), [`${long}yz (full)`, 'B'])
     assert.deepStrictEqual(split(`${long}yz1234\r\nB\r\n`), [`${long}yz (full)`, '1234 (tail)', 'B'])
+    assert.deepStrictEqual(split(`${long}y\r\nB\r\n`), [`${long}y (full)`, 'B'])
     assert.deepStrictEqual(split('abcdefgh\nB\n', { most: 3 }), ['abc (full)', 'def (full)', 'gh (tail)', 'B'])
   })
 

@@ -236,6 +236,27 @@ describe('listening line: sending', () => {
     near(starts(bench)[1], starts(bench)[0] + 2 * CHARACTER + 5)
   })
 
+  it('half duplex: waits for the rest of a message, however it is delivered, or until it is torn', async () => {
+    const bench = await opened()
+    collect(bench.lease, { framing: toyFraming({ silence: 200 }) })
+    says(bench, 'half')
+    const sent = bench.lease.send(bytes('a;'), { quiet: 5 })
+    // an adapter that delivers late
+    await bench.clock.advance(20)
+    assert.equal(bench.wire.sent.length, 0)
+    says(bench, ' and rest;')
+    await bench.run(sent)
+    near(starts(bench)[0], 21 + 5)
+    await bench.clock.advance(50)
+    says(bench, 'torn')
+    const t = bench.clock.now()
+    // who does not wait for silence does not wait for this either
+    await bench.run(bench.lease.send(bytes('b;')))
+    near(starts(bench)[1], t)
+    await bench.run(bench.lease.send(bytes('c;'), { quiet: 5 }))
+    near(starts(bench)[2], t + 200 + 5)
+  })
+
   it('into a flood nothing is sent: LINE_JAMMED, then it goes on', async () => {
     const bench = await opened()
     collect(bench.lease, { stallLimit: 500 })

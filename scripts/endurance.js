@@ -5,6 +5,8 @@
  *   npm run endurance -- redeploys [1000]    so many redeploys and reconnects in a real Node-RED; nothing may be left behind
  *   npm run endurance -- mixed [600]         so many seconds of an NX PLC and three regulators on one paced line; no value may be wrong
  *   npm run endurance -- c24 [10]            so many MB to a simulated C24 that reads slowly, in virtual time; nothing may be lost
+ *   npm run endurance -- c24messages [10000]   so many messages each way on a line that damages bytes; what was lost, doubled, wrong
+ *   npm run endurance -- c24random [1000000]   so many random inputs for everything that reads bytes of a C24 port
  */
 
 const path = require('node:path')
@@ -56,6 +58,28 @@ const RUNS = {
       if (lost || wrong || counts.discarded) throw new Error(`${flow}: ${lost} messages were lost`)
     }
     print('nothing was lost')
+  },
+
+  /** @param {string} [messages] */
+  async c24messages(messages = '10000') {
+    const count = whole(messages, 'messages')
+    const { APART, CONFIRMED, WEAR, c24Messages } = require(
+      path.join(__dirname, '..', 'test', 'simulation', 'c24-messages.js')
+    )
+    for (const [name, options] of Object.entries({ bidirectional: CONFIRMED, free: APART })) {
+      const { outcomes, toModule, toUs } = await c24Messages({ count, wear: WEAR, ...options })
+      print(`${name}: ${JSON.stringify({ outcomes, toModule, toUs })}`)
+      for (const { doubled, glued } of [toModule, toUs]) {
+        if (doubled || glued) throw new Error(`${name}: ${doubled} doubled, ${glued} glued together`)
+      }
+    }
+  },
+
+  /** @param {string} [inputs] */
+  async c24random(inputs = '1000000') {
+    const { melsecRandom } = require(path.join(support, 'melsec-random.js'))
+    print(JSON.stringify(melsecRandom({ inputs: whole(inputs, 'inputs') })))
+    print(`no exception, heap ${Math.round(process.memoryUsage().heapUsed / 1e6)} MB`)
   }
 }
 

@@ -1,6 +1,6 @@
 'use strict'
 const { PlcError } = require('../error')
-const { ACK_FRAME, OUR_NAK, encodeNak, nakMeaning } = require('../codec/melsec/bidirectional')
+const { ACK_FRAME, OUR_NAK, encodeNak, nakText } = require('../codec/melsec/bidirectional')
 const { Repeats } = require('../codec/melsec/repeats')
 const { asPlcError } = require('./failure')
 
@@ -144,9 +144,8 @@ class C24Talk {
   #judge(end) {
     const { name, priority, repeatUnanswered } = this.#settings
     if (end.kind === 'nak') {
-      const { text, again } = nakMeaning(end.code)
-      const error = new PlcError('C24_NAK', { station: name, nak: shownCode(end.code), reason: text })
-      return { again, error }
+      const error = new PlcError('C24_NAK', { station: name, nak: shownCode(end.code), reason: nakText(end.code) })
+      return { again: true, error }
     }
     const unanswered = end.error.code === 'TIMEOUT'
     const ignored = end.crossed && priority === 'c24'

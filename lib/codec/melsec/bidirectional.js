@@ -20,35 +20,30 @@ const EMPTY = Buffer.alloc(0)
 const ACK_FRAME = Buffer.of(ACK)
 
 /**
- * Error codes behind a NAK (user's manual, ch. 10). `again`: the same frame may be taken the next time, and the module has not taken this one.
- * @type {ReadonlyMap<number, { text: string, again: boolean }>}
+ * Error codes behind a NAK (user's manual, ch. 10). Each says that the module has not taken the frame, so it may be sent again; also 7F25H, since a
+ * length that was damaged on its way is answered so.
+ * @type {ReadonlyMap<number, string>}
  */
-const NAK_CODES = new Map(
-  [
-    [0x7f01, 'buffer full: the data before was not taken yet', true],
-    [0x7f20, 'ASCII-binary conversion error', true],
-    [0x7f21, 'error in the head of the frame', true],
-    [0x7f24, 'sum check error', true],
-    [0x7f25, 'the data is longer than the receive area', false],
-    [0x7f31, 'both sides sent at the same time', true],
-    [0x7f40, 'time-out: the frame stopped', true],
-    [0x7f41, 'wrong length', true],
-    [0x7f67, 'overrun', true],
-    [0x7f68, 'framing error', true],
-    [0x7f69, 'parity error', true],
-    [0x7f6a, 'buffer full', true]
-  ].map(([code, text, again]) => [Number(code), { text: String(text), again: again === true }])
-)
+const NAK_CODES = new Map([
+  [0x7f01, 'buffer full: the data before was not taken yet'],
+  [0x7f20, 'ASCII-binary conversion error'],
+  [0x7f21, 'error in the head of the frame'],
+  [0x7f24, 'sum check error'],
+  [0x7f25, 'the data is longer than the receive area'],
+  [0x7f31, 'both sides sent at the same time'],
+  [0x7f40, 'time-out: the frame stopped'],
+  [0x7f41, 'wrong length'],
+  [0x7f67, 'overrun'],
+  [0x7f68, 'framing error'],
+  [0x7f69, 'parity error'],
+  [0x7f6a, 'buffer full']
+])
 
 /** What we say: 0022H to 005FH are free for the other side of the module (7.2). None contains a control code. */
 const OUR_NAK = Object.freeze({ sum: 0x22, length: 0x23, incomplete: 0x24, notHex: 0x25, other: 0x2f })
 
-/**
- * What the code of a NAK says.
- * @param {number} code
- * @returns {{ text: string, again: boolean }} an unknown one may be repeated: the frame was not taken
- */
-const nakMeaning = code => NAK_CODES.get(code) ?? { text: 'not in the list', again: true }
+/** What the code of a NAK says, in words. @param {number} code */
+const nakText = code => NAK_CODES.get(code) ?? 'a code that is not in the list'
 
 const word = value => Buffer.of(value & 0xff, (value >> 8) & 0xff)
 
@@ -104,10 +99,12 @@ const DATA = 'data'
 const SUM = 'sum'
 const CODE = 'code'
 const JUNK = 'junk'
+/** An ACK came: one byte without a check. */
+const ALONE = 'alone'
 
 /**
  * Bytes -> frames, ACK and NAK. After anything that is damaged the rest is dropped until the line is silent: a byte inside it could be taken for
- * an ENQ or an ACK, and the other side awaits our answer anyway.
+ * an ENQ or an ACK, and the other side awaits our answer anyway. An ACK counts when it stands alone, or before an ENQ.
  *
  * Messages: `{ kind: 'data', bytes }`, `{ kind: 'ack' }`, `{ kind: 'nak', code }`, `{ kind: 'damaged', bytes, reason, began }`; `began`: a frame
  * had begun, so that the other side awaits an answer. Reasons: `stray`, `sum`, `length`, `notHex`, `incomplete`, `closed`.
@@ -131,7 +128,11 @@ class FrameSplitter {
   /** @param {any} format of `bidirectionalFormat` */
   constructor(format) {
     this.#format = format
-    this.silence = format.silence
+  }
+
+  /** ms without a byte after which `flush` is called: an ACK stands alone sooner than a frame is given up. */
+  get silence() {
+    return this.#state === ALONE ? this.#format.ackSilence : this.#format.silence
   }
 
   /** Bytes of what has begun. */
@@ -156,7 +157,9 @@ class FrameSplitter {
   }
 
   #giveUp(reason) {
-    if (this.#state !== IDLE) {
+    if (this.#state === ALONE) {
+      this.#done({ kind: 'ack', bytes: EMPTY })
+    } else if (this.#state !== IDLE) {
       const began = this.#began
       const bytes = Buffer.from(this.#raw)
       this.#out.push({ kind: 'damaged', bytes, complete: false, reason: this.#reason || reason, began })
@@ -198,6 +201,7 @@ class FrameSplitter {
     if (this.#raw.length < this.#format.most) this.#raw.push(byte)
     if (this.#state === JUNK) return
     if (this.#state === IDLE) return this.#head(byte)
+    if (this.#state === ALONE) return this.#behindAck(byte)
     if (this.#state !== SUM && this.#isAdditional(byte)) return
     this.#part.push(byte)
     if (this.#state === LENGTH || this.#state === DATA) this.#sum = (this.#sum + byte) & 0xffff
@@ -214,12 +218,19 @@ class FrameSplitter {
       this.#began = true
       this.#expect(LENGTH, 2)
     } else if (byte === ACK) {
-      this.#done({ kind: 'ack', bytes: EMPTY })
+      this.#state = ALONE
     } else if (byte === NAK) {
       this.#expect(CODE, 2)
     } else {
       this.#junk('stray')
     }
+  }
+
+  /** A frame may follow at once. Anything else: the ACK was the damaged head of a frame, or of a NAK. */
+  #behindAck(byte) {
+    if (byte !== ENQ) return this.#junk('stray')
+    this.#done({ kind: 'ack', bytes: EMPTY })
+    this.#take(byte)
   }
 
   #ended() {
@@ -269,6 +280,6 @@ module.exports = {
   bidirectionalFraming,
   encodeFrame,
   encodeNak,
-  nakMeaning,
+  nakText,
   sumOf
 }

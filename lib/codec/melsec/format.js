@@ -14,6 +14,8 @@ const MOST_FRAME = 80
 const HEX_SILENCE = 100
 /** ms without a byte after which what follows cannot belong to a damaged frame of the bidirectional protocol. */
 const FRAME_SILENCE = 50
+/** ms that an ACK stands alone, at least: then it is no damaged head of a frame. */
+const ACK_SILENCE = 2
 
 const bad = (setting, value, reason) => new PlcError('BAD_SETTING', { setting, value, reason })
 const shown = bytes => (bytes.length === 0 ? 'empty' : Buffer.from(bytes).toString('hex').toUpperCase())
@@ -136,8 +138,9 @@ const bidirectionalFormat = (options = {}) => {
   number('gap', gap, { least: 0, most: 3600000 })
   const { additional, escaped } = transparency(options)
   const silence = gap || Math.max(FRAME_SILENCE, Math.ceil(4 * character))
+  const ackSilence = Math.max(ACK_SILENCE, Math.ceil(4 * character))
   const flags = { asciiBinary: options.asciiBinary === true, padEven: options.padEven === true }
-  return Object.freeze({ unit, sumCheck, most, additional, escaped, silence, ...flags })
+  return Object.freeze({ unit, sumCheck, most, additional, escaped, silence, ackSilence, ...flags })
 }
 
 /** A key that is the same for the same format. @param {string} kind @param {Record<string, any>} format */

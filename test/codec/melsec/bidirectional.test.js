@@ -6,7 +6,7 @@ const melsec = require('../../../lib/codec/melsec/bidirectional')
 const { Repeats } = require('../../../lib/codec/melsec/repeats')
 const { FRAMES, TEXT, bytes } = require('../../vectors/melsec')
 
-const { ACK_FRAME, bidirectionalFraming, encodeFrame, encodeNak, nakMeaning } = melsec
+const { ACK_FRAME, bidirectionalFraming, encodeFrame, encodeNak, nakText } = melsec
 const splitter = options => bidirectionalFraming(bidirectionalFormat(options)).create()
 const encode = (body, options) => encodeFrame(Buffer.from(body), bidirectionalFormat(options))
 const code = wanted => error => error.code === wanted
@@ -72,7 +72,10 @@ describe('MELSEC bidirectional protocol', () => {
   })
 
   it('ACK and NAK', () => {
-    const nak = (wire, options) => splitter(options).push(bytes(wire))
+    const nak = (wire, options) => {
+      const one = splitter(options)
+      return [...one.push(bytes(wire)), ...one.flush()]
+    }
     assert.deepEqual(nak('06'), [{ kind: 'ack', bytes: Buffer.alloc(0), complete: true }])
     assert.deepEqual(nak('15 24 7F'), [{ kind: 'nak', bytes: bytes('24 7F'), code: 0x7f24, complete: true }])
     // application manual, 13.5: '1234' is stored as 3412H
@@ -80,9 +83,8 @@ describe('MELSEC bidirectional protocol', () => {
     assert.deepEqual(ACK_FRAME, bytes('06'))
     assert.deepEqual(encodeNak(0x22, bidirectionalFormat()), bytes('15 22 00'))
     assert.deepEqual(encodeNak(0x22, bidirectionalFormat({ asciiBinary: true })), bytes('15 32 32 30 30'))
-    assert.match(nakMeaning(0x7f24).text, /sum/)
-    assert.equal(nakMeaning(0x7f25).again, false)
-    assert.equal(nakMeaning(0x1234).again, true)
+    assert.match(nakText(0x7f24), /sum/)
+    assert.match(nakText(0x1234), /not in the list/)
   })
 
   it('after damage all is dropped until the line is silent, and told once', () => {
@@ -95,6 +97,24 @@ describe('MELSEC bidirectional protocol', () => {
     assert.equal(message.reason, 'sum')
     assert.equal(message.began, true)
     assert.equal(one.push(frameOf([1, 2]))[0].kind, 'data')
+  })
+
+  it('an ACK counts when it stands alone or before a frame: it may be a damaged ENQ or NAK', () => {
+    const one = splitter({ character: 1 })
+    assert.deepEqual(one.push(ACK_FRAME), [])
+    assert.deepEqual([one.held, one.silence], [1, 4])
+    assert.equal(one.flush()[0].kind, 'ack')
+    assert.ok(one.silence >= 50)
+    const kinds = wire => {
+      const fresh = splitter()
+      return [...fresh.push(wire), ...fresh.flush()].map(({ kind }) => kind)
+    }
+    assert.deepEqual(kinds(Buffer.concat([ACK_FRAME, frameOf([1, 2])])), ['ack', 'data'])
+    assert.deepEqual(kinds(Buffer.concat([ACK_FRAME, frameOf([1, 2]).subarray(1)])), ['damaged'])
+    assert.deepEqual(kinds(bytes('06 24 7F')), ['damaged'])
+    assert.deepEqual(kinds(bytes('06 06')), ['damaged'])
+    one.push(ACK_FRAME)
+    assert.equal(one.reset()[0].kind, 'ack')
   })
 
   it('stray bytes ask for no answer', () => {

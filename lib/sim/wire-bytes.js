@@ -72,8 +72,11 @@ function schedule(wire, sending) {
  * How many bytes are heard at once. A master's frame reaches the stations whole: they need no pieces, and a timer each would be
  * wasted; but a station that may react to any byte (`appetite`) says how many it can hear at once.
  */
-function pieceOf({ chunk, echo }, { from, bytes }, listeners) {
+function pieceOf({ chunk, echo, active }, sending, listeners) {
+  const { from, bytes } = sending
   const hungry = listeners.flatMap(({ station }) => (station?.appetite ? [station.appetite()] : []))
+  // what they say is not true any more when bytes that are still on their way have come
+  if (hungry.length > 0 && active.some(each => each.from === from && each !== sending)) return 1
   const whole = from.handlers && !echo
   const standard = whole ? bytes.length : typeof chunk === 'function' ? chunk() : chunk
   return Math.max(1, Math.min(standard, ...hungry))

@@ -104,6 +104,27 @@ describe('simulated wire: stations that speak by themselves', () => {
     ])
   })
 
+  it('and also where one frame follows another without a pause', async () => {
+    const { clock, wire, end } = setUp()
+    let room = 10
+    const pieces = []
+    wire.remove(1)
+    const receive = bytes => {
+      room -= bytes.length
+      pieces.push([clock.now(), room])
+      return []
+    }
+    wire.add({ ...speaker(2), appetite: () => Math.max(1, room), receive })
+    end.write(Buffer.from('0123456'))
+    end.write(Buffer.from('0123456'))
+    await clock.drain()
+    // the end of the room is seen when it comes
+    assert.ok(
+      pieces.some(([at, left]) => at === 10 && left === 0),
+      JSON.stringify(pieces)
+    )
+  })
+
   describe('faults of what they say', () => {
     const cases = [
       ['lost', undefined, 'FIRST'],

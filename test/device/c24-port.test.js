@@ -136,6 +136,18 @@ describe('C24 port, free messages', () => {
     assert.deepEqual(bench.values(), ['X'])
   })
 
+  it('messages by silence: behind a torn one the next waits as long', async () => {
+    await opened({ port: { framing: 'gap', gap: 5000 } })
+    const sending = bench.device.send('SET 125')
+    await bench.clock.advance(4)
+    bench.peer.cut()
+    await bench.run(sending)
+    const at = bench.clock.now()
+    await bench.clock.advance(2000)
+    await bench.send('NEXT')
+    assert.ok(bench.peer.times.at(-1) - at >= 5000)
+  })
+
   it('a character that the encoding does not have is damage', async () => {
     await opened({ port: { encoding: 'ascii' } })
     bench.peer.say(hex('41 C2 0D 0A'))

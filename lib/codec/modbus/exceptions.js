@@ -32,7 +32,7 @@ const byNumber = new Map(EXCEPTIONS.map(row => [row.number, row]))
 const byCode = new Map(EXCEPTIONS.map(row => [String(row.code), row]))
 
 /**
- * The row of an exception; numbers that the protocol does not name are a refusal too.
+ * The row of an exception; of numbers that the protocol does not name nobody knows whether the device did it.
  * @param {number} number 0..255
  * @returns {ExceptionRow}
  */
@@ -42,7 +42,7 @@ const exceptionOf = number =>
     code: 'MODBUS_EXCEPTION',
     words: 'not named by the protocol',
     again: false,
-    write: 'refused'
+    write: 'unknown'
   }
 
 /**

@@ -219,8 +219,8 @@ describe('MODBUS conversation: writes are never repeated', () => {
     }
   })
 
-  it('exceptions are a refusal, but for 04, 05 and 0B', () => {
-    const refusals = [1, 2, 3, 6, 7, 8, 9, 10, 255]
+  it('exceptions are a refusal, but for 04, 05, 0B and those without a name', () => {
+    const refusals = [1, 2, 3, 6, 7, 8, 10]
     for (const number of refusals) {
       const { error, steps } = write([exception(number, 16)])
       assert.match(error.code, /^MODBUS_/)
@@ -229,6 +229,7 @@ describe('MODBUS conversation: writes are never repeated', () => {
     unknown(write([exception(4, 16)]), 'MODBUS_DEVICE_FAILURE')
     unknown(write([exception(5, 16)]), 'MODBUS_ACKNOWLEDGE')
     unknown(write([exception(11, 16)]), 'MODBUS_GATEWAY_TARGET')
+    for (const number of [9, 77, 255]) unknown(write([exception(number, 16)]), 'MODBUS_EXCEPTION')
   })
 
   it('is not confirmed by what its own echo holds', () => {

@@ -233,7 +233,7 @@ describe('MODBUS exceptions', () => {
 
   it('every number has its code; unknown ones keep their number', () => {
     for (let number = 0; number < 256; number++) {
-      const [, expected = 'MODBUS_EXCEPTION', again = false, write = 'refused'] =
+      const [, expected = 'MODBUS_EXCEPTION', again = false, write = 'unknown'] =
         known.find(row => row[0] === number) ?? []
       const row = exceptionOf(number)
       assert.deepEqual([row.code, row.again, row.write], [expected, again, write], String(number))
@@ -251,7 +251,7 @@ describe('MODBUS exceptions', () => {
       assert.ok(CODES[row.code])
       assert.equal(exceptionByCode(row.code), row)
     }
-    assert.equal(exceptionByCode('MODBUS_EXCEPTION').write, 'refused')
+    assert.equal(exceptionByCode('MODBUS_EXCEPTION').write, 'unknown')
     assert.equal(exceptionByCode('TIMEOUT'), undefined)
     assert.equal(exceptionByCode(undefined), undefined)
   })

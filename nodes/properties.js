@@ -150,7 +150,7 @@ const PROPERTIES = {
     ackTimeout: number(1000, 10, 600000),
     attempts: number(3, 1, 20),
     repeatUnanswered: flag(),
-    priority: choice('c24', 'c24', 'us', 'both'),
+    priority: choice('both', 'both', 'c24', 'us'),
     repeats: choice('mark', 'mark', 'drop'),
     repeatAfter: number(0, 0, 3600000),
     repeatWithin: number(10000, 0, 3600000)

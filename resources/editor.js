@@ -148,7 +148,7 @@ var nxlineSerialPlc = (() => {
           ackTimeout: number(1e3, 10, 6e5),
           attempts: number(3, 1, 20),
           repeatUnanswered: flag(),
-          priority: choice("c24", "c24", "us", "both"),
+          priority: choice("both", "both", "c24", "us"),
           repeats: choice("mark", "mark", "drop"),
           repeatAfter: number(0, 0, 36e5),
           repeatWithin: number(1e4, 0, 36e5)

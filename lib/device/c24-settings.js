@@ -90,7 +90,7 @@ const readConfirmation = given => ({
   ackTimeout: number(given, 'ackTimeout', { fallback: 1000, least: 1 }),
   attempts: number(given, 'attempts', { fallback: 3, least: 1, most: 20 }),
   repeatUnanswered: isOn(given.repeatUnanswered),
-  priority: choice('priority', given.priority, ['c24', 'us', 'both']),
+  priority: choice('priority', given.priority, ['both', 'c24', 'us']),
   repeats: choice('repeats', given.repeats, ['mark', 'drop']),
   repeatAfter: number(given, 'repeatAfter', { fallback: 0 }),
   repeatWithin: number(given, 'repeatWithin', { fallback: 10000 })

@@ -75,6 +75,9 @@ describe('simulated C24: receive area', () => {
     hear(bytes('41 10 13 10 10 10 11 42 0D 0A'))
     assert.strictEqual(shown(c24.messages[0].bytes), '41 13 10 11 42')
     assert.deepStrictEqual([c24.counts.halted, c24.counts.resumed], [0, 0])
+    // what stands behind it is data, also where it looks like the end
+    hear(bytes('41 10 0D 0A 42 0D 0A'))
+    assert.strictEqual(shown(c24.messages[1].bytes), '41 0D 0A 42')
   })
   it('ASCII-binary: the complete code is converted, too, user frames are not; half a byte hides it', () => {
     const taken = (settings, sent) => {

@@ -5,7 +5,6 @@ const { BUFFER, encodeLine, inconFraming } = require('../codec/incon/message')
 const { realClock } = require('../line')
 const { asPlcError } = require('./failure')
 const { blank, choice, isOn, wholeNumber } = require('./options')
-const { sharedPool } = require('./open')
 
 /**
  * The serial link of an INCON-M84/M86/M86R: lines of text, both ways. Nothing in it confirms a line: one that has left the port is `sent`.
@@ -211,69 +210,6 @@ class InconLink {
  */
 const createInconLink = options => new InconLink(options)
 
-/** A link with a line of its own. */
-class InconConnection {
-  #link
-  #lease
-
-  /** @param {{ link: InconLink, lease: any }} parts */
-  constructor({ link, lease }) {
-    this.#link = link
-    this.#lease = lease
-  }
-
-  get link() {
-    return this.#link
-  }
-
-  /** `state`, `reason`, `stats()`, `trace()`, and events by `on` and `off`. */
-  get line() {
-    return this.#lease.line
-  }
-
-  /** @param {string|number|Uint8Array} value @param {{ deadline?: number }} [options] as of {@link InconLink} */
-  send(value, options) {
-    return this.#link.send(value, options)
-  }
-
-  /** @param {(line: Received) => void} callback @returns {() => void} stop */
-  listen(callback) {
-    return this.#link.listen(callback)
-  }
-
-  /** Ends all and gives the line back. @returns {Promise<void>} */
-  close() {
-    this.#link.close()
-    return this.#lease.release()
-  }
-}
-
-/**
- * An INCON controller on a line of its own settings, for use without Node-RED. Links with the same settings share a wire.
- *
- * ```js
- * const link = openInconLink({ path: '/dev/ttyUSB0', baudRate: 9600 })
- * link.listen(({ value, complete }) => console.log(value, complete))
- * await link.send('O1234')   // { outcome: 'sent', … }: it has left the port, nobody confirms it
- * await link.close()
- * ```
- * @param {Record<string, any>} options all of `lineSettings` (path, or host and port) and of `createInconLink`; `pool`: another than the shared one
- * @returns {InconConnection}
- * @throws {PlcError} BAD_SETTING, WIRE_CONFLICT, LINE_USE
- */
-const openInconLink = ({ pool = sharedPool(), ...options }) => {
-  const transport = options.transport ?? (options.host ? 'tcp' : 'serial')
-  const name = options.name ?? 'INCON'
-  // the name is the link's; the line is called by its path
-  const lease = pool.open({ ...options, name: '', transport }, { id: name, name })
-  try {
-    return new InconConnection({ link: createInconLink({ ...options, name, lease }), lease })
-  } catch (error) {
-    lease.release()
-    throw error
-  }
-}
-
 /**
  * @typedef {object} Received
  * @property {string|null} value the text; null if it is damaged by its own check
@@ -296,4 +232,4 @@ const openInconLink = ({ pool = sharedPool(), ...options }) => {
  * @property {number} bytes that went out
  */
 
-module.exports = { InconLink, createInconLink, openInconLink }
+module.exports = { InconLink, createInconLink }

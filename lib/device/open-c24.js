@@ -1,25 +1,19 @@
 'use strict'
 const { createC24Port } = require('./c24-port')
-const { sharedPool } = require('./open')
+const { OwnLine, openOnOwnLine } = require('./own-line')
 
 /** A C24 port with a line of its own. */
-class C24Connection {
+class C24Connection extends OwnLine {
   #port
-  #lease
 
-  /** @param {{ port: import('./c24-port').C24Port, lease: any }} parts */
-  constructor({ port, lease }) {
-    this.#port = port
-    this.#lease = lease
+  /** @param {{ device: import('./c24-port').C24Port, lease: any }} parts */
+  constructor(parts) {
+    super(parts)
+    this.#port = parts.device
   }
 
   get port() {
     return this.#port
-  }
-
-  /** `state`, `reason`, `stats()`, `trace()`, and events by `on` and `off`. */
-  get line() {
-    return this.#lease.line
   }
 
   /** @param {unknown} value @param {{ deadline?: number }} [options] as of `C24Port` */
@@ -30,12 +24,6 @@ class C24Connection {
   /** @param {(message: import('./c24-port').Received) => void} callback @returns {() => void} stop */
   listen(callback) {
     return this.#port.listen(callback)
-  }
-
-  /** Ends all and gives the line back. @returns {Promise<void>} */
-  close() {
-    this.#port.close()
-    return this.#lease.release()
   }
 }
 
@@ -52,17 +40,13 @@ class C24Connection {
  * @returns {C24Connection}
  * @throws {import('../error').PlcError} BAD_SETTING, WIRE_CONFLICT, LINE_USE
  */
-const openC24Port = ({ pool = sharedPool(), ...options }) => {
-  const transport = options.transport ?? (options.host ? 'tcp' : 'serial')
-  const name = options.name ?? 'C24'
-  // the gap of a line is another one than that of messages
-  const lease = pool.open({ ...options, name: '', transport, gap: 0 }, { id: name, name })
-  try {
-    return new C24Connection({ port: createC24Port({ ...options, name, lease }), lease })
-  } catch (error) {
-    lease.release()
-    throw error
-  }
-}
+const openC24Port = options =>
+  openOnOwnLine(options, {
+    name: 'C24',
+    device: createC24Port,
+    connection: parts => new C24Connection(parts),
+    // the gap of a line is another one than that of messages
+    line: { gap: 0 }
+  })
 
 module.exports = { C24Connection, openC24Port }

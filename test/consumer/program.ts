@@ -10,8 +10,11 @@ import {
   listPorts,
   messagesOf,
   mixedConflict,
+  openC24Port,
   openChinoRegulator,
-  openNxPlc
+  openInconLink,
+  openNxPlc,
+  toBufferMemory
 } from '@nxline/node-red-serial-plc'
 import { createNxLine, createVirtualClock, serveOnTcp } from '@nxline/node-red-serial-plc/sim'
 
@@ -95,6 +98,28 @@ export async function why(): Promise<string> {
   return ok || !cause ? String(seen.value) : [cause.code, cause.text, cause.remedy, ...wrong].join('. ')
 }
 
+export async function listening(): Promise<string> {
+  const c24 = openC24Port({ path: '/dev/ttyUSB0', format: 'words', bidirectional: true })
+  const stop: () => void = c24.listen(({ value, text, bytes, count, complete, reason, timestamp }) => {
+    const when: number = complete ? timestamp : count
+    console.log(value, text, bytes.length, when, reason?.length)
+  })
+  const { outcome, code, attempts, ms } = await c24.send([100, 250])
+  stop()
+  await c24.close()
+  const link = openInconLink({ host: 'server', port: 4001, checked: true })
+  link.listen(({ value, number, lost = 0, reason }) => {
+    const line: string | null = value
+    if (reason === 'check') console.log(line?.length, number, lost)
+  })
+  const sent: 'sent' | 'unknown' | 'refused' | 'failed' = (await link.send('O1234')).outcome
+  await link.close()
+  const image: number[] = toBufferMemory(Buffer.from('ABCDEFG123'), { unit: 'byte' })
+  return outcome === 'confirmed' ? sent : `${code} ${attempts} ${ms} ${image[0]}`
+}
+
+// @ts-expect-error there is no such unit
+toBufferMemory(Buffer.alloc(2), { unit: 'dword' })
 // @ts-expect-error there is no such protocol
 diagnose({ path: '/dev/ttyUSB0', station: 11, protocol: 'modbus' })
 // @ts-expect-error there is no such protocol

@@ -250,11 +250,19 @@ const CODES = Object.freeze({
   NO_CONFIGURATION: ['{node} has no {what}', 'Choose one in the dialog of the node.']
 })
 
+/** Elements of a list in an error's text: one of millions must not cost a second and a gigabyte. */
+const MOST_SHOWN = 50
+
+const shortened = value => {
+  const isLong = (Array.isArray(value) || ArrayBuffer.isView(value)) && /** @type {any} */ (value).length > MOST_SHOWN
+  return isLong ? Array.from({ length: MOST_SHOWN }, (_, n) => value[n]) : value
+}
+
 const shown = value => {
   if (value === undefined) return '?'
   if (typeof value === 'string') return value
   try {
-    return JSON.stringify(value) ?? String(value)
+    return JSON.stringify(shortened(value), (_, inner) => shortened(inner)) ?? String(value)
   } catch {
     return typeof value // BigInt, or an object that contains itself: an error's text must not fail
   }

@@ -116,7 +116,8 @@ const readSettings = (given, line) => {
     use: readUse(given, { flow, format, bidirectional }),
     value: {
       format: choice('format', given.format, [...FORMATS]),
-      encoding: choice('encoding', given.encoding, [...ENCODINGS])
+      encoding: choice('encoding', given.encoding, [...ENCODINGS]),
+      most: format.most
     },
     // two who answer each other do not begin inside what the other one says
     quiet: bidirectional ? Math.max(quiet, Math.ceil(4 * character)) : quiet,

@@ -117,10 +117,21 @@ class C24Talk {
     }
     this.#waiting++
     const due = deadline > 0 ? this.#clock.now() + deadline : Infinity
-    // one frame with all its repetitions before the next: order is kept
-    const result = this.#turn.then(() => this.#exchange(frame, { due, deadline }))
-    this.#turn = result.then(() => void this.#waiting--)
-    return result
+    return new Promise(resolve => {
+      // whose time is over is told so at once, also while another one is repeated
+      const tooLate = () => resolve(outcomeOf('failed', this.#deadlineError(deadline), { attempts: 0, bytes: 0 }))
+      const timer = deadline > 0 ? this.#clock.setTimer(tooLate, deadline) : null
+      // one frame with all its repetitions before the next: order is kept
+      this.#turn = this.#turn.then(async () => {
+        this.#clock.clearTimer(timer)
+        resolve(await this.#exchange(frame, { due, deadline }))
+        this.#waiting--
+      })
+    })
+  }
+
+  #deadlineError(limit) {
+    return new PlcError('DEADLINE', { line: this.#lease.line.name, limit })
   }
 
   /** @returns {Promise<Result>} */
@@ -158,7 +169,7 @@ class C24Talk {
     const now = this.#clock.now()
     const { line } = this.#lease
     if (this.#closed) return { error: new PlcError('LINE_CLOSED', { line: line.name }), sent: 0 }
-    if (now >= due) return { error: new PlcError('DEADLINE', { line: line.name, limit: deadline }), sent: 0 }
+    if (now >= due) return { error: this.#deadlineError(deadline), sent: 0 }
     const flight = { crossed: false, crossing: null, over: false, late: null }
     this.#flight = flight
     const match = message => this.#matches(message, { flight, frame })

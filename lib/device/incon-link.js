@@ -16,13 +16,8 @@ const ENCODINGS = ['ascii', 'latin1', 'utf8']
 // and a cut "O1234" would be taken for "O12"
 const TORN_END = Buffer.from('?\r\n')
 
-/** What those have in common who send on one line: the number of the next checked line, and the torn lines that were ended. */
-const lines = new WeakMap()
-const memoryOf = line => {
-  const known = lines.get(line) ?? { number: START, ended: line.stats().tornWrites ?? 0 }
-  lines.set(line, known)
-  return known
-}
+/** What those have in common who send on one line: the number of the next checked line. Survives redeploys. */
+const memoryOf = line => (line.memory('INCON').incon ??= { number: START })
 
 const readSettings = given => ({
   name: blank(given.name) ? 'INCON' : String(given.name).trim(),
@@ -73,7 +68,8 @@ class InconLink {
     this.#clock = clock
     const { most, silence, encoding, checked } = this.#settings
     const framing = inconFraming({ most, silence, ascii: encoding === 'ascii', checked })
-    this.#heard = lease.listen(framing, (message, { at }) => this.#take(message, at))
+    const use = { torn: { first: TORN_END, apart: true } }
+    this.#heard = lease.listen(framing, (message, { at }) => this.#take(message, at), use)
   }
 
   get name() {
@@ -156,30 +152,13 @@ class InconLink {
     }
     if (this.#settings.checked) memory.number = nextNumber(memory.number)
     try {
-      this.#endTorn(memory)
-      const { ms } = await this.#put(bytes, deadline)
+      const { before, quiet } = this.#settings
+      const { ms } = await this.#lease.send(bytes, { quiet: before, after: quiet, deadline, label: this.name })
       return { outcome: 'sent', attempts: 1, ms, bytes: bytes.length }
     } catch (/** @type {any} */ error) {
       const sent = Number(error?.details?.sent) || 0
       return failure(sent > 0 ? 'unknown' : 'failed', error, sent)
     }
-  }
-
-  #put(bytes, deadline = 0) {
-    const { before, quiet } = this.#settings
-    return this.#lease.send(bytes, { quiet: before, after: quiet, deadline, label: this.name })
-  }
-
-  /** A line was cut off: it is ended before the next one, once for all who send here. */
-  #endTorn(memory) {
-    const torn = this.#lease.line.stats().tornWrites ?? 0
-    const already = memory.ended
-    memory.ended = torn
-    if (torn === already) return
-    this.#put(TORN_END).catch(error => {
-      // it did not go out: it is needed still (if it was torn itself, the line has counted it)
-      if (!(error?.details?.sent > 0)) memory.ended = already
-    })
   }
 
   /** What waits is still settled by the line; the lease stays its owner's. Any number of times. */

@@ -22,6 +22,8 @@ class Courier {
   #sendEnd = -Infinity
   /** @type {import('./letter').Letter|null} the one on the wire */
   #letter = null
+  /** what is no letter and was not taken by the port yet */
+  #kept = new Set()
 
   /**
    * @param {any} parts of the line, see stream.js
@@ -76,7 +78,23 @@ class Courier {
   /** Bytes that are no letter. @param {Buffer} bytes @param {string} note */
   put(bytes, note) {
     this.#recorder.letter(bytes, note)
-    this.#give(bytes, error => error && this.#host.failed(error))
+    const kept = this.#kept
+    const own = {}
+    kept.add(own)
+    this.#give(bytes, error => {
+      // what an earlier connection says of its bytes concerns nobody
+      if (kept.delete(own) && error && kept === this.#kept) this.#host.failed(error)
+    })
+  }
+
+  /** How often the port has not taken what is no letter. */
+  get kept() {
+    return this.#kept.size
+  }
+
+  /** The port is given up, with all that it keeps. */
+  forget() {
+    this.#kept = new Set()
   }
 
   #give(bytes, done) {

@@ -22,7 +22,7 @@ const byte = value => {
  * How a listening line is used, complete and checked.
  * @param {Record<string, any>} [given] options of `lease.listen`
  * @returns {{ flow: 'none'|'dc', transparent: number|null, room: number, latency: number, stallLimit: number,
- *   torn: { wait: number, first: Buffer|null } }} times in ms, room in bytes
+ *   torn: { wait: number, first: Buffer|null, apart: boolean } }} times in ms, room in bytes
  * @throws {PlcError} BAD_SETTING
  */
 const flowOptions = ({ flow = 'none', transparent = null, torn = {}, ...given } = {}) => {
@@ -33,7 +33,11 @@ const flowOptions = ({ flow = 'none', transparent = null, torn = {}, ...given } 
     room: number('room', given.room ?? 64, { least: 1, most: 1000000 }),
     latency: number('latency', given.latency ?? 16),
     stallLimit: number('stallLimit', given.stallLimit ?? 30000, { least: 1 }),
-    torn: { wait: number('torn.wait', torn.wait ?? 0), first: torn.first?.length > 0 ? Buffer.from(torn.first) : null }
+    torn: {
+      wait: number('torn.wait', torn.wait ?? 0),
+      first: torn.first?.length > 0 ? Buffer.from(torn.first) : null,
+      apart: torn.apart === true
+    }
   }
 }
 
@@ -42,7 +46,8 @@ const flowDifference = (one, other) => {
   const shown = ({ torn, ...rest }) => ({
     ...rest,
     'torn.wait': torn.wait,
-    'torn.first': torn.first?.toString('hex') ?? ''
+    'torn.first': torn.first?.toString('hex') ?? '',
+    'torn.apart': torn.apart
   })
   const [mine, theirs] = [shown(one), shown(other)]
   const key = Object.keys(mine).find(name => mine[name] !== theirs[name])

@@ -66,7 +66,8 @@ class Lease {
    * @param {number} [options.room] bytes that the other side still takes after it has said stop; 64
    * @param {number} [options.latency] ms until the adapter brings what the other side has sent; 16
    * @param {number} [options.stallLimit] ms that a message may be stopped; 30000
-   * @param {{ wait?: number, first?: Buffer|null }} [options.torn] after a message that was cut off: silence of ours in ms, bytes before the next
+   * @param {{ wait?: number, first?: Buffer|null, apart?: boolean }} [options.torn] after a message that was cut off: silence of ours in ms, bytes
+   *   before the next; apart: the `after` of that one comes between them
    * @returns {{ close: () => void, pause: () => void, resume: () => void }} pause and resume tell the other side (flow dc)
    * @throws {PlcError} LINE_USE: the line asks stations, or listens in another way; BAD_SETTING; LINE_CLOSED
    */

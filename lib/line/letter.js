@@ -112,4 +112,13 @@ class Letter {
   }
 }
 
-module.exports = { Letter }
+/** A recogniser that throws recognises nothing. @param {(message: any) => boolean} match @param {any} message */
+const guarded = (match, message) => {
+  try {
+    return match(message)
+  } catch {
+    return false
+  }
+}
+
+module.exports = { Letter, guarded }

@@ -4,15 +4,14 @@ const { PlcError } = require('../error')
 const { Alarm } = require('./alarm')
 const { Courier } = require('./courier')
 const { DC1, DC3 } = require('./flow')
-const { Letter } = require('./letter')
+const { Letter, guarded } = require('./letter')
 const { Silence } = require('./silence')
+const { Torn } = require('./torn')
 
 const TOLERANCE = 0.001
 /** An acknowledgement may be late by this at least, ms: until then nothing goes out that it could be taken for. */
 const LEAST_HOLD = 1000
 const MOST_REPLIES = 16
-/** In the pool's memory of the wire: a message was cut off there, and nothing has gone out since. */
-const TORN = Symbol('torn')
 
 /**
  * What goes out on a listening line: one letter at a time, in order; replies to what came (ACK, NAK) before all that waits.
@@ -25,7 +24,7 @@ class Outbox {
   #character
   #host
   #recorder
-  #memories
+  #torn
   #flow
   #courier
   #silence
@@ -52,7 +51,7 @@ class Outbox {
     this.#settings = settings
     this.#character = times.character
     this.#recorder = recorder
-    this.#memories = memories
+    this.#torn = new Torn(memories)
     this.#flow = flow
     this.#host = host
     this.#courier = new Courier(parts, {
@@ -123,7 +122,7 @@ class Outbox {
     const letter = this.#letter
     this.#silence.stop()
     this.#alarm.stop()
-    const from = Math.max(this.#freeAt, this.#late?.until ?? 0, this.#tornUntil())
+    const from = Math.max(this.#freeAt, this.#late?.until ?? 0, this.#torn.until(this.#flow.options.torn.wait))
     if (this.#clock.now() < from - TOLERANCE) return this.#alarm.set(from, () => this.#wait())
     if (this.#flow.stopped) return this.#stall()
     if (letter.waitsFrom === null) {
@@ -150,11 +149,6 @@ class Outbox {
     if (this.#letter?.waits) this.#wait()
   }
 
-  #tornUntil() {
-    const torn = this.#memories.get(TORN)
-    return torn ? torn.at + this.#flow.options.torn.wait : -Infinity
-  }
-
   /** The other side takes nothing: who waits too long for that ends with a code. */
   #stall() {
     const { stallLimit } = this.#flow.options
@@ -174,10 +168,20 @@ class Outbox {
 
   #begin() {
     const letter = this.#letter
+    const before = this.#torn.first(this.#flow.options.torn)
+    if (before && this.#flow.options.torn.apart) return this.#endTorn(before, letter)
     this.#clock.clearTimer(letter.deadlineTimer)
-    const before = this.#memories.has(TORN) ? this.#flow.options.torn.first : null
-    this.#memories.delete(TORN)
+    this.#torn.over()
     this.#courier.start(letter, before)
+  }
+
+  /** Where the other side needs a pause to see that the torn one is over. */
+  #endTorn(first, letter) {
+    this.#torn.end()
+    this.#courier.put(first, 'torn')
+    if (this.#letter !== letter) return
+    this.#freeAt = this.sendEnd + letter.after
+    this.#wait()
   }
 
   /** The other side has said stop, or that it goes on. */
@@ -194,7 +198,8 @@ class Outbox {
 
   /** Bytes that go out before all that waits, without waiting for silence; never inside a letter. @param {Buffer} bytes */
   reply(bytes) {
-    if (bytes.length === 0 || this.#host.refusal()) return
+    // where the port keeps them they would all come at once, and late: each could be taken for that of another message
+    if (bytes.length === 0 || this.#host.refusal() || this.#courier.kept >= MOST_REPLIES) return
     this.#replies.push(Buffer.from(bytes))
     if (this.#replies.length > MOST_REPLIES) this.#replies.shift()
     if (!this.#courier.inside && !this.#flow.stopped) this.#sendReplies()
@@ -272,7 +277,7 @@ class Outbox {
     this.#clock.clearTimer(letter.deadlineTimer)
     if (!error) return letter.resolve(now, answer)
     if (letter.isTorn(now, this.#character)) {
-      this.#memories.set(TORN, { at: now })
+      this.#torn.mark(now)
       this.#recorder.stats.count('tornWrites')
     }
     if (!letter.waits) this.#recorder.letterFailed(error)
@@ -285,7 +290,9 @@ class Outbox {
     this.#queue = []
     this.#replies = []
     this.#late = null
+    this.#torn.lost()
     this.#idle()
+    this.#courier.forget()
     for (const letter of letters) this.#settle(letter, reason)
   }
 
@@ -318,14 +325,6 @@ class Outbox {
     const letter = this.#letter
     const rest = letter ? letter.piece.end + (letter.wire.length - letter.out) * this.#character : -Infinity
     return Math.max(this.sendEnd, rest)
-  }
-}
-
-const guarded = (match, message) => {
-  try {
-    return match(message)
-  } catch {
-    return false
   }
 }
 

@@ -145,6 +145,8 @@ const bodyOf = (value, encoding) => {
     throw refusal(value, 'it must be text, a number or bytes')
   }
   if (typeof value !== 'string') return withoutEnd(Buffer.from(value))
+  // half of a pair of surrogates would go out as a replacement character
+  if (/\p{Surrogate}/u.test(value)) throw refusal('text', 'it has half a character')
   const text = withoutEnd(Buffer.from(value, encoding === 'ascii' ? 'utf8' : encoding))
   const strange = text.find(byte => byte < 0x20 || byte === 0x7f || (encoding === 'ascii' && byte > 0x7e))
   if (strange !== undefined)
@@ -173,14 +175,18 @@ const withoutEnd = bytes => {
  * @throws {PlcError} BAD_VALUE (empty, a NUL or line feed inside, text that is not printable), FRAME_TOO_LONG
  */
 const encodeLine = (value, { encoding = 'ascii', checked = false, number = START } = {}) => {
+  const most = MOST_SENT - END.length - (checked ? OVERHEAD : 0)
+  const tooLong = got => new PlcError('FRAME_TOO_LONG', { what: 'the line', got, most })
+  // what is far too long is not even looked at
+  const given = typeof value === 'string' || value instanceof Uint8Array ? value.length : 0
+  if (given > MOST_SENT) throw tooLong(given)
   const body = bodyOf(value, encoding)
   if (body.length === 0) throw refusal(value, 'an empty line is no message')
   // the manual's strCopy ends at a NUL, and the controller at a line feed
   const forbidden = body.find(byte => byte === 0 || byte === LF)
   if (forbidden !== undefined)
     throw refusal(value, `${nameOf(forbidden)} (${forbidden ? 'line feed' : 'NUL'}) cannot be inside a line`)
-  const most = MOST_SENT - END.length - (checked ? OVERHEAD : 0)
-  if (body.length > most) throw new PlcError('FRAME_TOO_LONG', { what: 'the line', got: body.length, most })
+  if (body.length > most) throw tooLong(body.length)
   return Buffer.concat([checked ? seal(body, number) : body, END])
 }
 

@@ -126,8 +126,15 @@ const wordsToBytes = words => {
 const bytesToWords = bytes =>
   Array.from({ length: Math.ceil(bytes.length / 2) }, (_, n) => bytes[2 * n] | ((bytes[2 * n + 1] ?? 0) << 8))
 
-const listOf = value =>
-  Array.isArray(value) || ArrayBuffer.isView(value) ? Array.from(/** @type {any} */ (value)) : null
+const isList = value => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView))
+
+const listOf = value => (isList(value) ? Array.from(value) : null)
+
+/** Bytes that a value needs at least: before anything of it is copied, since an array may be long on paper only. */
+const leastBytes = (value, format) => {
+  if (typeof value === 'string' || value instanceof Uint8Array) return value.length
+  return isList(value) ? value.length * (format === 'words' ? 2 : 1) : 0
+}
 
 /** @type {Record<string, (value: any, encoding: string) => Buffer>} */
 const READERS = {
@@ -151,11 +158,13 @@ const READERS = {
 /**
  * What a flow wants to send, as bytes. A Buffer (or Uint8Array) is taken as it is in every format.
  * @param {unknown} value text: a string or a number; bytes: an array of 0 to 255; words: an array of -32768 to 65535, or one
- * @param {{ format: string, encoding: string }} options of FORMATS and ENCODINGS
+ * @param {{ format: string, encoding: string, most?: number }} options of FORMATS and ENCODINGS; most: bytes of a message
  * @returns {Buffer}
- * @throws {PlcError} BAD_VALUE
+ * @throws {PlcError} BAD_VALUE, FRAME_TOO_LONG
  */
-const valueToBytes = (value, { format, encoding }) => {
+const valueToBytes = (value, { format, encoding, most = Infinity }) => {
+  const got = leastBytes(value, format)
+  if (got > most) throw new PlcError('FRAME_TOO_LONG', { what: 'the message', got, most })
   if (value instanceof Uint8Array) return Buffer.from(value)
   return READERS[format](value, encoding)
 }

@@ -1,0 +1,212 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { createC24Port, createInconLink, createPool } = require('../../lib')
+const { createVirtualClock } = require('../../lib/sim')
+const { c24Bench } = require('../device/c24-bench')
+const { inconBench } = require('../device/incon-bench')
+const { createWire } = require('../line/support/bench')
+
+/** Far more than any of these calls needs, and far less than the seconds that each of them once took. */
+const MOST = 500
+
+/** ms of processor time until it settles: a busy machine does not lengthen it. */
+const blocked = async work => {
+  const start = process.cpuUsage()
+  await work()
+  const { user, system } = process.cpuUsage(start)
+  return (user + system) / 1000
+}
+
+const longOnPaper = () => {
+  const payload = []
+  payload.length = 2e7
+  return payload
+}
+
+const PORTS = {
+  'C24, text': () => c24Bench(),
+  'C24, EUC-KR': () => c24Bench({ port: { encoding: 'euc-kr' } }),
+  'C24, bytes': () => c24Bench({ port: { format: 'bytes' } }),
+  'C24, words': () => c24Bench({ port: { format: 'words' } }),
+  'C24, bidirectional': () => c24Bench({ port: { bidirectional: true } }),
+  INCON: () => inconBench(),
+  'INCON, UTF-8': () => inconBench({ link: { encoding: 'utf8' } })
+}
+
+describe('attack: hostile payloads for what is sent as messages', () => {
+  // 3 s and a gigabyte each, and the end of the process from 4e9 on: all of it was copied, or stood in the error's text
+  for (const [name, open] of Object.entries(PORTS)) {
+    it(`${name}: what is far too long is refused at once`, async () => {
+      const b = open()
+      await b.clock.advance(5)
+      const values = [longOnPaper(), new Float64Array(2e6), new Uint16Array(2e6), '가'.repeat(2e6), new Uint8Array(2e6)]
+      for (const value of values) {
+        let outcome
+        const ms = await blocked(async () => (outcome = await b.run(b.device.send(value))))
+        assert.equal(outcome.outcome, 'refused')
+        assert.match(outcome.code, /^(FRAME_TOO_LONG|BAD_VALUE)$/)
+        assert.ok(ms < MOST, `${ms} ms`)
+      }
+      await b.close()
+    })
+
+    it(`${name}: what is no message is refused, and nothing goes out`, async () => {
+      const b = open()
+      await b.clock.advance(5)
+      const values = [
+        ...[Symbol('x'), 1n, [1n], [NaN], [1.5], ['1'], [[1]], new Array(3), null, undefined, true, NaN, Infinity],
+        ...[{ length: 1 }, JSON.parse('{"__proto__":[65]}'), Object.create(null), new Date(0), () => 65],
+        ...[new DataView(new ArrayBuffer(4)), new ArrayBuffer(4), new BigInt64Array(1), new Float32Array([NaN])],
+        ...(name === 'C24, text' ? [] : ['\ud800'])
+      ]
+      for (const [n, value] of values.entries()) {
+        const { outcome, code } = await b.run(b.device.send(value))
+        assert.deepEqual([outcome, code], ['refused', 'BAD_VALUE'], `value ${n}`)
+      }
+      assert.equal(b.lease.line.stats().bytesOut ?? 0, 0)
+      await b.close()
+    })
+  }
+})
+
+describe('attack: a line that was cut off before a redeploy', () => {
+  const cut = async (baudRate, after) => {
+    const clock = createVirtualClock()
+    const wire = createWire(clock)
+    const pool = createPool({ clock, random: () => 0.5 })
+    const open = () => {
+      const lease = pool.open({ transport: 'simulated', wire, baudRate }, { id: 'a', name: 'a' })
+      return { lease, link: createInconLink({ lease, clock }) }
+    }
+    const first = open()
+    await clock.advance(10)
+    const torn = first.link.send('O1234'.padEnd(200, ' '))
+    await clock.advance(after)
+    return { clock, wire, open, first, torn }
+  }
+  const texts = wire => wire.sent.slice(1).map(({ bytes }) => bytes.toString('latin1'))
+
+  // the next line was glued to what the controller held of the first one: "O12" and "O99" CR LF were O12O99
+  it('INCON: unplugged, then deployed: the cut line is ended before the next one', async () => {
+    const { clock, wire, open, first, torn } = await cut(9600, 3)
+    wire.unplug()
+    assert.equal((await clock.run(torn)).outcome, 'unknown')
+    first.link.close()
+    await clock.run(first.lease.release())
+    const second = open()
+    await clock.advance(10)
+    const outcomes = await clock.run(Promise.all([second.link.send('O99'), second.link.send('O98')]))
+    assert.deepEqual(texts(wire), ['?\r\n', 'O99\r\n', 'O98\r\n'])
+    assert.deepEqual(
+      outcomes.map(({ outcome, bytes }) => [outcome, bytes]),
+      [
+        ['sent', 5],
+        ['sent', 5]
+      ]
+    )
+    // each apart, as the PLC needs it
+    const [, end, next] = wire.sent.map(({ at }) => at)
+    assert.ok(next - end >= 50, `${next - end} ms`)
+    second.link.close()
+    await clock.run(second.lease.release())
+  })
+
+  it('INCON: also if the next line waits already while the port is being closed', async () => {
+    const { clock, wire, open, first, torn } = await cut(1200, 100)
+    first.link.close()
+    const released = first.lease.release()
+    const second = open()
+    const next = second.link.send('O99')
+    await clock.run(Promise.all([released, torn]))
+    assert.equal((await clock.run(next)).outcome, 'sent')
+    assert.deepEqual(texts(wire), ['?\r\n', 'O99\r\n'])
+    second.link.close()
+    await clock.run(second.lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+
+  it('INCON: lost again while the cut line is being ended: it is ended once more', async () => {
+    const { clock, wire, first, torn } = await cut(9600, 3)
+    wire.unplug()
+    await clock.run(torn)
+    await clock.advance(2000)
+    const lost = first.link.send('O99')
+    clock.setTimer(() => wire.unplug(), 8)
+    const { outcome, bytes } = await clock.run(lost)
+    assert.deepEqual([outcome, bytes], ['failed', 0])
+    await clock.advance(5000)
+    assert.equal((await clock.run(first.link.send('O98'))).outcome, 'sent')
+    assert.deepEqual(texts(wire), ['?\r\n', '?\r\n', 'O98\r\n'])
+    first.link.close()
+    await clock.run(first.lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+})
+
+/** ENQ, length in words, data, sum: made here, not by the codec. */
+const frame = text => {
+  const section = [text.length / 2, 0, ...Buffer.from(text)]
+  const sum = section.reduce((a, b) => a + b, 0)
+  return Buffer.from([5, ...section, sum & 255, sum >> 8])
+}
+
+describe('attack: CTS that is never released', () => {
+  // 05 01 00 41 42 84 00 again and again: a thousand ACKs waited in the port, and all would have gone out at once, an hour late
+  it('does not collect acknowledgements without end', async () => {
+    const clock = createVirtualClock()
+    let end
+    let kept = 0
+    const transport = () => ({
+      open(handlers) {
+        end = handlers
+        clock.setTimer(() => handlers.opened(), 1)
+      },
+      write: () => void kept++,
+      hint() {},
+      close: done => done(),
+      id: () => 'the port'
+    })
+    const pool = createPool({ clock, random: () => 0.5, transports: { serial: transport } })
+    const line = { transport: 'serial', path: '/dev/ttyS0', flowControl: 'rtscts' }
+    const lease = pool.open(line, { id: 'a', name: 'a' })
+    const port = createC24Port({ lease, clock, bidirectional: true, flow: 'driver' })
+    let received = 0
+    port.listen(() => received++)
+    await clock.advance(10)
+    for (let n = 0; n < 200; n++) {
+      end.data(frame('AB'))
+      await clock.advance(1000)
+    }
+    assert.equal(received, 200)
+    assert.ok(kept <= 16, `${kept} acknowledgements in the port`)
+    // over a new connection they are sent again
+    end.closed(null)
+    await clock.advance(5000)
+    kept = 0
+    end.data(frame('CD'))
+    assert.equal(kept, 1)
+    port.close()
+    await clock.run(lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+})
+
+describe('attack: a message that waits behind one that is not answered', () => {
+  // it was told 5 s after its 100 ms had passed
+  it('bidirectional: its deadline is told when it has passed', async () => {
+    const b = c24Bench({ port: { bidirectional: true, ackTimeout: 5000 } })
+    await b.clock.advance(5)
+    const first = b.device.send('AB')
+    const { outcome, code, attempts, ms } = await b.send('CD', { deadline: 100 })
+    assert.deepEqual([outcome, code, attempts, Math.round(ms)], ['failed', 'DEADLINE', 0, 100])
+    const last = b.device.send('EF')
+    await b.clock.run(first)
+    // and that of the late answer of the first one
+    await b.clock.advance(6000)
+    assert.match(b.peer.hex(), /^050100414284000501004546/)
+    await b.close()
+    assert.equal((await last).outcome, 'unknown')
+    assert.equal(b.clock.pending(), 0)
+  })
+})

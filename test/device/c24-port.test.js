@@ -108,6 +108,35 @@ describe('C24 port, free messages', () => {
     assert.equal(bench.peer.text(), '\r\nNEXT\r\n')
   })
 
+  it('the end code behind an interrupted message is converted as those of messages are, and not between user frames', async () => {
+    const rows = [
+      [{ asciiBinary: true }, '0D0A'],
+      [{ asciiBinary: true, first: '02', last: '03', unit: 'byte' }, '\x03']
+    ]
+    for (const [own, end] of rows) {
+      await opened({ port: { ...own, tornEnd: true } })
+      const sending = bench.device.send('SET 125')
+      await bench.clock.advance(4)
+      bench.peer.cut()
+      await bench.run(sending)
+      bench.peer.heard.length = 0
+      await bench.clock.advance(3000)
+      await bench.send('A')
+      assert.equal(bench.peer.text(), own.first ? `${end}\x0241\x03` : `${end}410D0A`)
+      await bench.close()
+    }
+    // an acknowledged frame needs no end code
+    await opened({ port: { bidirectional: true, tornEnd: true, ackTimeout: 100 } })
+    const sending = bench.device.send('AB')
+    await bench.clock.advance(2)
+    bench.peer.cut()
+    await bench.run(sending)
+    bench.peer.heard.length = 0
+    await bench.clock.advance(3000)
+    await bench.send('AB')
+    assert.equal(bench.peer.hex().slice(0, 6), '050100')
+  })
+
   it('a message that stops is told as incomplete', async () => {
     await opened({ port: { gap: 100 } })
     bench.peer.say('SET 1')

@@ -122,4 +122,15 @@ const CLOSE = {}
 
 const WEAR = { damaged: 0.005, lost: 0.005 }
 
-module.exports = { APART, CLOSE, CONFIRMED, WEAR, c24Messages }
+/**
+ * Free messages that are kept apart, eight characters and the end code, by theory: `hit` anywhere, which leaves another text (the module's program takes
+ * what its timer 0 ends); of these `seen` because the end code is hit, `unseen` because only the text is.
+ * @param {number} count
+ */
+const freeTheory = count => {
+  const whole = bytes => (1 - WEAR.damaged - WEAR.lost) ** bytes
+  const end = 1 - whole(2)
+  return { hit: count * (1 - whole(10)), seen: count * end, unseen: count * (1 - end) * (1 - whole(8)) }
+}
+
+module.exports = { APART, CLOSE, CONFIRMED, WEAR, c24Messages, freeTheory }

@@ -164,6 +164,8 @@ describe('INCON checked lines', () => {
     assert.deepStrictEqual(unseal(Buffer.from(sealed('no number'))), { text: Buffer.from('no number'), number: null })
     assert.deepStrictEqual(unseal(Buffer.from(sealed('#1x A'))), { text: Buffer.from('#1x A'), number: null })
     assert.deepStrictEqual(unseal(Buffer.from(sealed('#05 a*b'))), { text: Buffer.from('a*b'), number: 5 })
+    for (const body of ['x01 A', '#01xA', '#1'])
+      assert.deepStrictEqual(unseal(Buffer.from(sealed(body))), { text: Buffer.from(body), number: null })
   })
 
   it('what does not fit is damaged', () => {

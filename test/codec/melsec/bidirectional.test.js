@@ -208,6 +208,15 @@ describe('MELSEC repeated frames', () => {
     assert.equal(repeats.accept(one, 10001), false)
   })
 
+  it('what counts is the time since our ACK, whatever the clock says', () => {
+    const repeats = filter()
+    assert.equal(repeats.accept(one, 1e6), false)
+    assert.equal(repeats.accept(one, 1e6 + 1000), true)
+    assert.equal(repeats.accept(one, 1e6 + 1999), false)
+    assert.equal(repeats.accept(one, 1e6 + 1999 + 5000), true, 'within: that late still')
+    assert.equal(repeats.accept(one, 1e6 + 6999 + 5001), false)
+  })
+
   it('a frame behind our NAK began with its first attempt', () => {
     const repeats = filter()
     repeats.accept(one, 0)

@@ -32,6 +32,11 @@ describe('MELSEC values', () => {
     assert.deepEqual(to('가한A', 'text', 'euc-kr'), bytes('B0 A1 C7 D1 41'))
     assert.deepEqual(to('あｱ', 'text', 'shift_jis'), bytes('82 A0 B1'))
     assert.deepEqual(to('A\r\n\0~', 'text', 'euc-kr'), bytes('41 0D 0A 00 7E'))
+    // the last ones: of hangul, of hanja, of half width, of the encoding
+    assert.deepEqual(to('힝詰', 'text', 'euc-kr'), bytes('C8 FE FD FE'))
+    assert.deepEqual(to('ｱﾟ熙', 'text', 'shift_jis'), bytes('B1 DF EA A4'))
+    assert.deepEqual(to('\xff', 'text', 'latin1'), bytes('FF'))
+    assert.deepEqual(to('\x7f', 'text', 'ascii'), bytes('7F'))
   })
 
   it('refuses what would go out as something else', () => {

@@ -74,13 +74,21 @@ describe('MELSEC messages, received', () => {
     assert.deepEqual(cut('1234\r\nOK\r\n', { most: 4 }), ['1234', 'OK'])
     assert.deepEqual(cut('12345\r\nOK\r\n', { most: 4 }), ['tooLong:1234', 'OK'])
     assert.deepEqual(cut('123456', { framing: 'gap', gap: 5, most: 4 }, { flush: true }), ['tooLong:1234'])
-    assert.deepEqual(cut(`\x02${'1'.repeat(500)}\x02OK\x03`, { ...frames, most: 4 }).at(0), 'tooLong:1111')
+    assert.deepEqual(cut(`\x02${'1'.repeat(500)}\x02OK\x03`, { ...frames, most: 4 }), ['tooLong:1111', 'OK'])
+    assert.deepEqual(cut('\x021234567\x02', { ...frames, most: 4, gap: 9 }, { flush: true }), [
+      'tooLong:1234',
+      'silence:'
+    ])
   })
 
   it('transparent codes: what stands behind the additional code is data', () => {
     const options = { end: bytes('0A'), transparent: bytes('10') }
     assert.deepEqual(cut('A\x10\nB\x10\x10C\x10\x11\n', options), ['A\nB\x10C\x11'])
     assert.deepEqual(cut('\x02\x10\x02A\x10\x03\x03', { ...frames, transparent: bytes('10') }), ['\x02A\x03'])
+    // one at the end of what was torn belongs to nothing that follows
+    const one = splitter(options)
+    assert.deepEqual(told([...one.push(text('A\x10')), ...one.reset()]), ['closed:A'])
+    assert.deepEqual(told(one.push(text('\nB\n'))), ['', 'B'])
   })
 
   it('ASCII-binary conversion: the complete code is looked for behind it (13.4)', () => {
@@ -94,6 +102,7 @@ describe('MELSEC messages, received', () => {
     assert.deepEqual(cut('410d0A0D0A430D0A', { asciiBinary: true }), ['notHex:A', 'C'])
     assert.deepEqual(cut('41420', { asciiBinary: true }, { flush: true }), ['odd:AB'])
     assert.ok(splitter({ asciiBinary: true }).silence > 0)
+    assert.deepEqual(cut('410', { framing: 'gap', gap: 5, asciiBinary: true }, { flush: true }), ['odd:A'])
     // a C24 that sends user frames converts them too
     assert.deepEqual(cut('0241420302430', { ...frames, asciiBinary: true }, { flush: true }), ['AB', 'odd:C'])
   })
@@ -172,8 +181,8 @@ describe('MELSEC messages, sent', () => {
   })
 
   it('refuses codes of the flow control, or makes them transparent', () => {
-    assert.throws(() => encode('A\x13B', { dc: true }), code('FLOW_CODE_INSIDE'))
-    assert.throws(() => encode('\x11', { dc: true }), code('FLOW_CODE_INSIDE'))
+    assert.throws(() => encode('\x11', { dc: true }), { code: 'FLOW_CODE_INSIDE', message: /DC1/ })
+    assert.throws(() => encode('A\x13B', { dc: true }), { code: 'FLOW_CODE_INSIDE', message: /DC3/ })
     assert.deepEqual(
       encode('A\x13\x10\x11', { dc: true, transparent: bytes('10') }),
       bytes('41 10 13 10 10 10 11 0D 0A')
@@ -190,6 +199,8 @@ describe('MELSEC messages, sent', () => {
 
   it('refuses what is too long, or nothing', () => {
     assert.throws(() => encode('ABC', { most: 2 }), code('FRAME_TOO_LONG'))
+    assert.deepEqual(encode('AB', { most: 2 }), bytes('41 42 0D 0A'))
+    assert.equal(encode('A', { first: Buffer.alloc(80, 1), unit: 'byte' }).length, 83)
     assert.throws(() => encode('', { framing: 'gap', gap: 1 }), code('BAD_VALUE'))
     assert.throws(() => encode('', frames), code('BAD_VALUE'))
   })

@@ -518,11 +518,17 @@ var nxlineSerialPlc = (() => {
         ],
         NO_CONFIGURATION: ["{node} has no {what}", "Choose one in the dialog of the node."]
       });
+      var MOST_SHOWN = 50;
+      var shortened = (value) => {
+        const isLong = (Array.isArray(value) || ArrayBuffer.isView(value)) && /** @type {any} */
+        value.length > MOST_SHOWN;
+        return isLong ? Array.from({ length: MOST_SHOWN }, (_, n) => value[n]) : value;
+      };
       var shown = (value) => {
         if (value === void 0) return "?";
         if (typeof value === "string") return value;
         try {
-          return JSON.stringify(value) ?? String(value);
+          return JSON.stringify(shortened(value), (_, inner) => shortened(inner)) ?? String(value);
         } catch {
           return typeof value;
         }

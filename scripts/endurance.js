@@ -5,8 +5,9 @@
  *   npm run endurance -- redeploys [1000]    so many redeploys and reconnects in a real Node-RED; nothing may be left behind
  *   npm run endurance -- mixed [600]         so many seconds of an NX PLC and three regulators on one paced line; no value may be wrong
  *   npm run endurance -- c24 [10]            so many MB to a simulated C24 that reads slowly, in virtual time; nothing may be lost
- *   npm run endurance -- c24messages [10000]   so many messages each way on a line that damages bytes; what was lost, doubled, wrong
- *   npm run endurance -- c24random [1000000]   so many random inputs for everything that reads bytes of a C24 port
+ *   npm run endurance -- c24messages [10000] so many messages each way on a line that damages bytes; what was lost, doubled, wrong
+ *   npm run endurance -- c24random [1000000] so many random inputs for everything that reads bytes of a C24 port
+ *   npm run endurance -- inconrandom [1000000] the same for lines of an INCON controller
  */
 
 const path = require('node:path')
@@ -63,7 +64,7 @@ const RUNS = {
   /** @param {string} [messages] */
   async c24messages(messages = '10000') {
     const count = whole(messages, 'messages')
-    const { APART, CONFIRMED, WEAR, c24Messages } = require(
+    const { APART, CONFIRMED, WEAR, c24Messages, freeTheory } = require(
       path.join(__dirname, '..', 'test', 'simulation', 'c24-messages.js')
     )
     for (const [name, options] of Object.entries({ bidirectional: CONFIRMED, free: APART })) {
@@ -73,12 +74,20 @@ const RUNS = {
         if (doubled || glued) throw new Error(`${name}: ${doubled} doubled, ${glued} glued together`)
       }
     }
+    print(`free, by theory: ${JSON.stringify(freeTheory(count))}`)
   },
 
   /** @param {string} [inputs] */
   async c24random(inputs = '1000000') {
     const { melsecRandom } = require(path.join(support, 'melsec-random.js'))
     print(JSON.stringify(melsecRandom({ inputs: whole(inputs, 'inputs') })))
+    print(`no exception, heap ${Math.round(process.memoryUsage().heapUsed / 1e6)} MB`)
+  },
+
+  /** @param {string} [inputs] */
+  async inconrandom(inputs = '1000000') {
+    const { inconRandom } = require(path.join(support, 'incon-random.js'))
+    print(JSON.stringify(inconRandom({ inputs: whole(inputs, 'inputs') })))
     print(`no exception, heap ${Math.round(process.memoryUsage().heapUsed / 1e6)} MB`)
   }
 }

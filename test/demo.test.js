@@ -15,7 +15,7 @@ describe('demo flow', () => {
   const flow = require('../examples/demo/flow.json')
 
   it('writers say how many outputs they have, texts bring their units', () => {
-    for (const node of flow.filter(({ type }) => /^(nx-write|chino-regulator)$/.test(type)))
+    for (const node of flow.filter(({ type }) => /^(nx-write|chino-regulator|melsec-c24|incon-link)$/.test(type)))
       assert.equal(node.outputs, node.wires.length, node.name)
     // the dashboard ignores any other format
     for (const node of flow.filter(({ type }) => type === 'ui-text'))
@@ -71,14 +71,22 @@ describe('demo', function () {
     await shown(demo, 'Ctrl-C ends it')
     demo.child.kill('SIGINT')
     assert.deepEqual([...(await demo.ended)], [0, null], demo.err)
-    assert.deepEqual(Object.keys(counts(demo)), ['published', 'topics', 'writesConfirmed', 'errors', 'devices'])
+    assert.deepEqual(Object.keys(counts(demo)), [
+      'published',
+      'topics',
+      'writesConfirmed',
+      'answered',
+      'errors',
+      'devices'
+    ])
     assert.deepEqual(fs.readdirSync(folder), [])
   })
 
-  it('code 1 if nothing flowed: the line listens for 3 s before it asks', async () => {
+  it('code 1 if a device delivered nothing: the line of the PLCs listens for 3 s before it asks', async () => {
     const demo = start(['--seconds', '1'])
     const [code] = await demo.ended
-    assert.equal(counts(demo).published, 0)
+    const { devices } = counts(demo)
+    for (const name of ['furnace', 'tank', 'zone1', 'zone2']) assert.equal(devices[name], undefined)
     assert.equal(code, 1)
     assert.deepEqual(fs.readdirSync(folder), [])
   })
@@ -98,14 +106,17 @@ describe('demo', function () {
     assert.deepEqual([(await one.ended)[0], (await two.ended)[0]], [0, 0], one.err + two.err)
   })
 
-  it('ends with code 0 only if all four stations delivered', async () => {
+  it('ends with code 0 only if all six devices delivered', async () => {
     // a set value of each kind comes through within some seconds
     const demo = start(['--seconds', '8'])
     const [code] = await demo.ended
     const { devices, errors } = counts(demo)
-    assert.deepEqual(Object.keys(devices).toSorted(), ['furnace', 'tank', 'zone1', 'zone2'])
+    assert.deepEqual(Object.keys(devices).toSorted(), ['furnace', 'machine', 'press', 'tank', 'zone1', 'zone2'])
     for (const name of Object.keys(devices)) assert.ok(devices[name].published > 0, name)
     assert.ok(devices.furnace.writesConfirmed > 0 && devices.zone1.writesConfirmed > 0, JSON.stringify(devices))
+    // nobody confirms what is sent to these: they show it themselves
+    assert.ok(devices.press.answered > 0 && devices.machine.answered > 0, JSON.stringify(devices))
+    assert.deepEqual([devices.press.writesConfirmed, devices.machine.writesConfirmed], [0, 0])
     assert.deepEqual([code, errors], [0, 0], demo.out + demo.err)
     assert.equal(demo.err, '', 'no warning of the runtime')
   })

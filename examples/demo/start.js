@@ -1,8 +1,9 @@
 'use strict'
 
 /**
- * `npm start`: two simulated NX PLCs and two regulators on one virtual serial line, an MQTT broker, Node-RED with flow and dashboard.
- *   npm start -- --seconds 20    ends by itself; the last line is what flowed, as JSON; code 1 if nothing did
+ * `npm start`: two simulated NX PLCs and two regulators on one virtual serial line, a C24 and an INCON controller on lines of their own, an
+ * MQTT broker, Node-RED with flow and dashboard.
+ *   npm start -- --seconds 20    ends by itself; the last line is what flowed, as JSON; code 1 if not all did
  */
 
 const { setTimeout: sleep } = require('node:timers/promises')
@@ -10,11 +11,12 @@ const { parseArgs } = require('node:util')
 const { startBroker } = require('./broker')
 const { demoFlow } = require('./flow')
 const { freePort } = require('./ports')
+const { startMachine, startPress } = require('./machines')
 const { startRuntime } = require('./runtime')
 const { startStations } = require('./stations')
 const { watch } = require('./watcher')
 
-const DEVICES = ['furnace', 'tank', 'zone1', 'zone2']
+const DEVICES = ['furnace', 'tank', 'zone1', 'zone2', 'press', 'machine']
 
 const print = text => process.stdout.write(`${text}\n`)
 
@@ -35,23 +37,28 @@ function pile() {
 /** Starts all parts; what had been started is on the pile even if a later part fails. */
 async function startAll(parts) {
   const stations = parts.add(await startStations())
+  const press = parts.add(await startPress())
+  const machine = parts.add(await startMachine())
   const mqttPort = await freePort(1883)
   const broker = parts.add(await startBroker(mqttPort))
   const watcher = parts.add(await watch(broker.url))
   const port = await freePort(1880)
-  const flow = demoFlow({ line: stations.settings, mqttPort })
+  const flow = demoFlow({ stations, press, machine, mqttPort })
   const runtime = parts.add(await startRuntime({ port, flow }))
-  return { stations, broker, watcher, runtime }
+  return { stations, press, machine, broker, watcher, runtime }
 }
 
-function show({ stations, broker, runtime }) {
+function show({ stations, press, machine, broker, runtime }) {
   print('')
   print(`  Dashboard   ${runtime.url}/dashboard`)
   print(`  Editor      ${runtime.url}/`)
   print(
-    `  MQTT        ${broker.url}   values: plant/#   set: plant/furnace/set/setpoint, plant/zone1/set/manual_output`
+    `  MQTT        ${broker.url}   values: plant/#   set: plant/furnace/set/setpoint, plant/zone1/set/manual_output,`
   )
+  print(`              plant/press/set/recipe, plant/machine/set/program`)
   print(`  Line        ${stations.address}   simulated: NX PLCs 1 and 2, regulators 11 and 12, 38400 bit/s`)
+  print(`  Press       ${press.address}   simulated: MELSEC-Q serial module (C24), 19200 bit/s`)
+  print(`  Machine     ${machine.address}   simulated: INCON controller, 9600 bit/s`)
   print('')
 }
 
@@ -79,10 +86,14 @@ function secondsFrom(args) {
   return seconds
 }
 
-/** A run with a time is a test: values of each station and a confirmed set value of each kind must have come through (the first one takes 3 s). */
+/**
+ * A run with a time is a test: values of each device and a confirmed set value of each kind must have come through (the first one takes 3 s),
+ * and what was sent to press and machine must have been answered by them.
+ */
 function flowed({ devices }, seconds) {
   const written = ['furnace', 'zone1'].every(name => devices[name]?.writesConfirmed > 0)
-  return DEVICES.every(name => devices[name]?.published > 0) && (written || seconds < 5)
+  const answered = ['press', 'machine'].every(name => devices[name]?.answered > 0)
+  return DEVICES.every(name => devices[name]?.published > 0) && ((written && answered) || seconds < 5)
 }
 
 async function main() {
@@ -91,7 +102,7 @@ async function main() {
   const parts = pile()
   let counts
   try {
-    print('starting: simulated PLCs and regulators, MQTT broker, Node-RED ...')
+    print('starting: simulated devices, MQTT broker, Node-RED ...')
     const demo = await startAll(parts)
     show(demo)
     print(seconds ? `  ends by itself after ${seconds} s` : '  Ctrl-C ends it')

@@ -1,9 +1,7 @@
 'use strict'
 
-const fs = require('node:fs')
-const os = require('node:os')
-const path = require('node:path')
-const { createLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
+const { createLine } = require('../../lib/sim')
+const { offer } = require('./offer')
 
 const BAUD_RATE = 38400
 const TANK_PERIOD = 90000
@@ -46,33 +44,7 @@ async function startStations() {
   tank.set('K0', 30)
   zone1.set('400001', 250)
   zone2.set('400001', 600)
-  try {
-    return { line, ...onPty(line) }
-  } catch (error) {
-    if (error.code !== 'NO_PTY') throw error
-    return { line, ...(await onTcp(line)) }
-  }
-}
-
-function onPty({ wire }) {
-  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'nx-demo-'))
-  const remove = () => fs.rmSync(folder, { recursive: true, force: true })
-  try {
-    const port = serveOnPty({ wire, link: path.join(folder, 'nx-line') })
-    const close = async () => {
-      port.close()
-      remove()
-    }
-    return { address: port.path(), settings: { transport: 'serial', path: port.path(), baudRate: BAUD_RATE }, close }
-  } catch (error) {
-    remove()
-    throw error
-  }
-}
-
-async function onTcp({ wire }) {
-  const { host, port, close } = await serveOnTcp({ wire })
-  return { address: `tcp://${host}:${port}`, settings: { transport: 'tcp', host, port, baudRate: BAUD_RATE }, close }
+  return { line, ...(await offer({ wire: line.wire, name: 'nx-line', baudRate: BAUD_RATE })) }
 }
 
 module.exports = { startStations }

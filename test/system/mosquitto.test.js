@@ -6,6 +6,7 @@ const assert = require('node:assert/strict')
 const { execFileSync, spawn } = require('node:child_process')
 const path = require('node:path')
 const { demoFlow } = require('../../examples/demo/flow.js')
+const { startMachine, startPress } = require('../../examples/demo/machines.js')
 const { startStations } = require('../../examples/demo/stations.js')
 const { startNodeRed, until } = require('../support/node-red.js')
 const { root } = require('../support/source.js')
@@ -14,12 +15,14 @@ const { packedProduct, RUNTIMES, startMosquitto } = require('./support.js')
 for (const { name, red, node } of RUNTIMES) {
   describe(`Mosquitto, ${name}`, function () {
     this.timeout(60000)
-    let mosquitto, stations, runtime, listener
+    let mosquitto, stations, press, machine, runtime, listener
     const heard = []
 
     before(async () => {
       mosquitto = await startMosquitto()
       stations = await startStations()
+      press = await startPress()
+      machine = await startMachine()
       listener = spawn('mosquitto_sub', [
         '-h',
         '127.0.0.1',
@@ -43,13 +46,13 @@ for (const { name, red, node } of RUNTIMES) {
         node,
         product: packedProduct(),
         modules: { [dashboard]: path.join(root, 'node_modules', dashboard) },
-        flow: demoFlow({ line: stations.settings, mqttPort: mosquitto.port })
+        flow: demoFlow({ stations, press, machine, mqttPort: mosquitto.port })
       })
     })
     after(async () => {
       await runtime?.stop()
       listener?.kill()
-      await stations?.close()
+      for (const each of [machine, press, stations]) await each?.close()
       await mosquitto?.stop()
     })
     const hear = (topic, is) =>
@@ -111,6 +114,37 @@ for (const { name, red, node } of RUNTIMES) {
       const outcome = await hear('plant/furnace/outcome/setpoint', it => it.outcome === 'refused')
       assert.equal(outcome.code, 'VALUE_OUT_OF_RANGE')
       assert.equal(furnace.get('K0'), held)
+    })
+
+    it('a recipe goes to the C24 as words, once, and comes back in its own', async () => {
+      await hear('plant/press/state', it => it.quality === 'good' && it.recipe === 1 && it.set === 160)
+      publish('plant/press/set/recipe', '{"recipe":258,"set":215.5}')
+      const outcome = await hear('plant/press/outcome/recipe', it => it.outcome === 'sent')
+      assert.deepEqual([outcome.bytes, outcome.value], [8, [258, 2155, 0, 0]])
+      await hear('plant/press/state', it => it.recipe === 258 && it.set === 215.5 && it.temperature > 80)
+      // low byte first: 0102H is 02 01, 086BH is 6B 08
+      assert.deepEqual(
+        press.device.messages.map(({ bytes }) => bytes.toString('hex')),
+        ['02016b0800000000']
+      )
+      publish('plant/press/set/recipe', '{"recipe":3}')
+      const { text } = await hear('plant/errors', it => it.text.includes('two numbers'))
+      assert.ok(text)
+      assert.equal(press.device.messages.length, 1)
+    })
+
+    it('the name of a program goes to the INCON controller, which answers; its events arrive', async () => {
+      await hear('plant/machine/events', it => it.quality === 'good' && it.event === 'PART DONE')
+      publish('plant/machine/set/program', 'O4711')
+      await hear('plant/machine/outcome/program', it => it.outcome === 'sent' && it.value === 'O4711')
+      await hear('plant/machine/events', it => it.event === 'PROGRAM O4711 SELECTED')
+      assert.deepEqual(
+        machine.device.messages.map(({ text }) => text),
+        ['O4711']
+      )
+      publish('plant/machine/set/program', 'O가')
+      const refused = await hear('plant/machine/outcome/program', it => it.outcome === 'refused')
+      assert.equal(refused.code, 'BAD_VALUE')
     })
   })
 }

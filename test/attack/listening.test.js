@@ -210,3 +210,131 @@ describe('attack: a message that waits behind one that is not answered', () => {
     assert.equal(b.clock.pending(), 0)
   })
 })
+
+/**
+ * The other side by the wire's own time: what was on its way when the wire was lost never arrives. Cuts what it has heard as the real one does: at its
+ * end code, and by a silence (timer 0).
+ */
+const listeningPeer = (clock, baudRate) => {
+  const character = 10000 / baudRate
+  const heard = []
+  let end = null
+  let free = 0
+  return {
+    connect(handlers) {
+      end = handlers
+      return {
+        write(bytes) {
+          for (const byte of bytes) {
+            free = Math.max(free, clock.now()) + character
+            heard.push({ byte, at: free })
+          }
+        },
+        close: () => void (end = null)
+      }
+    },
+    unplug() {
+      const now = clock.now()
+      while (heard.at(-1)?.at > now) heard.pop()
+      free = 0
+      end?.closed()
+    },
+    /** @param {string} marker @param {number} silence ms after which what was held is dropped; 0: never */
+    messages(marker, silence) {
+      const messages = []
+      let text = ''
+      let last = 0
+      for (const { byte, at } of heard) {
+        if (silence > 0 && at - last > silence) text = ''
+        last = at
+        text += String.fromCharCode(byte)
+        if (!text.endsWith(marker)) continue
+        messages.push(text.slice(0, -marker.length))
+        text = ''
+      }
+      return messages
+    }
+  }
+}
+
+const KINDS = {
+  'C24, timer 0': { make: createC24Port, own: { timer0: 50 }, marker: '\r\n', silence: 50, whole: /^M\d{8}$/ },
+  'C24, tornEnd': {
+    make: createC24Port,
+    own: { tornEnd: true },
+    marker: '\r\n',
+    silence: 0,
+    whole: /^(M\d{8}|M?\d*\r?)$/
+  },
+  'C24, frames': {
+    make: createC24Port,
+    own: { first: '28', last: '29' },
+    marker: ')',
+    silence: 0,
+    whole: /\(M\d{8}$/
+  },
+  'C24, DC1/DC3': {
+    make: createC24Port,
+    own: { timer0: 50, flow: 'dc' },
+    marker: '\r\n',
+    silence: 50,
+    whole: /^M\d{8}$/
+  },
+  INCON: { make: createInconLink, own: {}, marker: '\r\n', silence: 0, whole: /^(M\d{8}|M?\d*\r?\??)$/ }
+}
+
+describe('attack: unplugged or deployed at any moment of a message', () => {
+  const run = async ({ make, own, marker, silence }, { at, unplug, deploy }) => {
+    const clock = createVirtualClock()
+    const wire = listeningPeer(clock, 9600)
+    const pool = createPool({ clock, random: () => 0.5 })
+    const open = () => {
+      const lease = pool.open({ transport: 'simulated', wire, baudRate: 9600 }, { id: 'a', name: 'a' })
+      return { lease, port: make({ lease, clock, ...own }) }
+    }
+    const settled = new Map()
+    const send = (port, text) =>
+      port.send(text).then(({ outcome }) => settled.set(text, [...(settled.get(text) ?? []), outcome]))
+    let user = open()
+    await clock.advance(10)
+    const sending = ['M10000001', 'M20000002'].map(text => send(user.port, own.last ? text.padEnd(10) : text))
+    await clock.advance(at)
+    if (unplug) wire.unplug()
+    if (deploy) {
+      user.port.close()
+      const released = user.lease.release()
+      user = open()
+      await clock.run(released)
+    }
+    await clock.run(Promise.all(sending))
+    await clock.advance(10000)
+    const last = own.last ? 'M30000003 ' : 'M30000003'
+    await clock.run(send(user.port, last))
+    await clock.advance(200)
+    user.port.close()
+    await clock.run(user.lease.release())
+    assert.deepEqual([clock.pending(), pool.lines().length], [0, 0])
+    return { settled, seen: wire.messages(marker, silence), last }
+  }
+
+  for (const [name, kind] of Object.entries(KINDS)) {
+    it(`${name}: one outcome each, none twice, none glued to another`, async () => {
+      for (const how of [{ unplug: true }, { deploy: true }, { unplug: true, deploy: true }]) {
+        for (let at = 0; at < (name === 'INCON' ? 80 : 30); at += 0.7) {
+          const { settled, seen, last } = await run(kind, { ...how, at })
+          const where = `${JSON.stringify(how)} at ${at}: ${JSON.stringify([...settled, seen])}`
+          assert.equal(settled.size, 3, where)
+          for (const [text, outcomes] of settled) {
+            const copies = seen.filter(message => message.includes(text.trim())).length
+            assert.equal(outcomes.length, 1, where)
+            assert.ok(copies <= 1, where)
+            if (outcomes[0] === 'sent') assert.equal(copies, 1, where)
+            if (outcomes[0] === 'failed') assert.equal(copies, 0, where)
+          }
+          assert.deepEqual(settled.get(last), ['sent'], where)
+          for (const message of seen) assert.match(message.trimEnd(), kind.whole, where)
+        }
+      }
+    })
+  }
+})

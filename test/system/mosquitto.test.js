@@ -37,8 +37,11 @@ for (const { name, red, node } of RUNTIMES) {
       listener.stdout.on('data', bytes => {
         const lines = (rest + bytes).split('\n')
         rest = lines.pop()
-        for (const line of lines)
-          heard.push([line.slice(0, line.indexOf(' ')), JSON.parse(line.slice(line.indexOf(' ') + 1))])
+        for (const line of lines) {
+          const [, topic, text] = /** @type {string[]} */ (/^(\S+) (.*)$/.exec(line))
+          // what was sent to the devices comes as well, and need not be JSON
+          if (!topic.includes('/set/')) heard.push([topic, JSON.parse(text)])
+        }
       })
       const dashboard = '@flowfuse/node-red-dashboard'
       runtime = await startNodeRed({

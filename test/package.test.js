@@ -47,7 +47,7 @@ describe('package.json', () => {
 
   it('is found by the words that people search for', () => {
     const words =
-      'node-red, oemax, oe max, nx700, nx-cpu700p, n70plus, chino, thyristor, scr, modbus, rtu, ascii, rs485, rs232, serial, plc, melsec, c24, 국번, 시리얼'
+      'node-red, oemax, oe max, nx700, nx-cpu700p, n70plus, chino, thyristor, scr, modbus, rtu, ascii, rs485, rs232, serial, plc, melsec, c24, qj71c24n, incon, cnc, 국번, 시리얼'
     for (const word of words.split(', ')) assert.ok(manifest.keywords.includes(word), word)
   })
 

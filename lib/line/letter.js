@@ -112,13 +112,4 @@ class Letter {
   }
 }
 
-/** A recogniser that throws recognises nothing. @param {(message: any) => boolean} match @param {any} message */
-const guarded = (match, message) => {
-  try {
-    return match(message)
-  } catch {
-    return false
-  }
-}
-
-module.exports = { Letter, guarded }
+module.exports = { Letter }

@@ -1,16 +1,14 @@
 'use strict'
 
 const { PlcError } = require('../error')
+const { Aftermath } = require('./aftermath')
 const { Alarm } = require('./alarm')
 const { Courier } = require('./courier')
 const { DC1, DC3 } = require('./flow')
-const { Letter, guarded } = require('./letter')
+const { Letter } = require('./letter')
 const { Silence } = require('./silence')
-const { Torn } = require('./torn')
 
 const TOLERANCE = 0.001
-/** An acknowledgement may be late by this at least, ms: until then nothing goes out that it could be taken for. */
-const LEAST_HOLD = 1000
 const MOST_REPLIES = 16
 
 /**
@@ -24,7 +22,7 @@ class Outbox {
   #character
   #host
   #recorder
-  #torn
+  #aftermath
   #flow
   #courier
   #silence
@@ -33,10 +31,6 @@ class Outbox {
   /** @type {any} the letter whose turn it is */
   #letter = null
   #replies = []
-  /** nothing new before this, ms */
-  #freeAt = -Infinity
-  /** @type {any} an acknowledgement that may still come: `{ match, until }` */
-  #late = null
 
   /**
    * @param {any} parts of the line, see stream.js; `flow`: how it is used at first
@@ -51,7 +45,7 @@ class Outbox {
     this.#settings = settings
     this.#character = times.character
     this.#recorder = recorder
-    this.#torn = new Torn(memories)
+    this.#aftermath = new Aftermath(clock, memories)
     this.#flow = flow
     this.#host = host
     this.#courier = new Courier(parts, {
@@ -122,7 +116,7 @@ class Outbox {
     const letter = this.#letter
     this.#silence.stop()
     this.#alarm.stop()
-    const from = Math.max(this.#freeAt, this.#late?.until ?? 0, this.#torn.until(this.#flow.options.torn.wait))
+    const from = this.#aftermath.until(this.#flow.options.torn)
     if (this.#clock.now() < from - TOLERANCE) return this.#alarm.set(from, () => this.#wait())
     if (this.#flow.stopped) return this.#stall()
     if (letter.waitsFrom === null) {
@@ -168,19 +162,19 @@ class Outbox {
 
   #begin() {
     const letter = this.#letter
-    const before = this.#torn.first(this.#flow.options.torn)
+    const before = this.#aftermath.first(this.#flow.options.torn)
     if (before && this.#flow.options.torn.apart) return this.#endTorn(before, letter)
     this.#clock.clearTimer(letter.deadlineTimer)
-    this.#torn.over()
+    this.#aftermath.over()
     this.#courier.start(letter, before)
   }
 
   /** Where the other side needs a pause to see that the torn one is over. */
   #endTorn(first, letter) {
-    this.#torn.end()
+    this.#aftermath.end()
     this.#courier.put(first, 'torn')
     if (this.#letter !== letter) return
-    this.#freeAt = this.sendEnd + letter.after
+    this.#aftermath.pause(this.sendEnd + letter.after)
     this.#wait()
   }
 
@@ -231,17 +225,10 @@ class Outbox {
   }
 
   #isLate(message) {
-    const late = this.#late
-    if (!late || this.#clock.now() > late.until || !guarded(late.match, message)) return false
-    this.#late = null
+    if (!this.#aftermath.isLate(message)) return false
     this.#recorder.late(null, message.bytes)
     if (this.#letter?.waits) this.#wait()
     return true
-  }
-
-  /** Until then nothing goes out that an acknowledgement of the last one could be taken for. */
-  #expectLate({ match, timeout }) {
-    this.#late = { match, until: this.#clock.now() + Math.max(timeout, LEAST_HOLD) }
   }
 
   // --- ends
@@ -258,8 +245,6 @@ class Outbox {
   #ended(error, answer) {
     const letter = this.#letter
     this.#idle()
-    if (letter.left) this.#freeAt = Math.max(this.#freeAt, letter.piece.end + letter.after)
-    if (error?.code === 'TIMEOUT') this.#expectLate(letter)
     this.#settle(letter, error, answer)
     if (error?.code === 'TIMEOUT') this.#host.troubled(error)
     this.pump()
@@ -275,9 +260,11 @@ class Outbox {
   #settle(letter, error, answer) {
     const now = this.#clock.now()
     this.#clock.clearTimer(letter.deadlineTimer)
+    if (letter.piece) this.#aftermath.pause(letter.piece.end + letter.after)
     if (!error) return letter.resolve(now, answer)
+    this.#aftermath.expect(letter)
     if (letter.isTorn(now, this.#character)) {
-      this.#torn.mark(now)
+      this.#aftermath.tear()
       this.#recorder.stats.count('tornWrites')
     }
     if (!letter.waits) this.#recorder.letterFailed(error)
@@ -289,8 +276,7 @@ class Outbox {
     const letters = this.#letter ? [this.#letter, ...this.#queue] : this.#queue
     this.#queue = []
     this.#replies = []
-    this.#late = null
-    this.#torn.lost()
+    this.#aftermath.lost()
     this.#idle()
     this.#courier.forget()
     for (const letter of letters) this.#settle(letter, reason)
@@ -309,9 +295,9 @@ class Outbox {
   #abandon(letter, reason) {
     if (letter.waits || letter.left) {
       this.#idle()
-      if (letter.left) this.#expectLate(letter)
       return this.#settle(letter, reason)
     }
+    this.#aftermath.expect(letter)
     letter.reject(reason, letter.given)
     letter.abandoned()
   }

@@ -338,3 +338,50 @@ describe('attack: unplugged or deployed at any moment of a message', () => {
     })
   }
 })
+
+describe('attack: a redeploy right behind a message', () => {
+  const redeployed = async (make, own, text) => {
+    const clock = createVirtualClock()
+    const wire = createWire(clock)
+    const pool = createPool({ clock, random: () => 0.5 })
+    const open = () => {
+      const lease = pool.open({ transport: 'simulated', wire, baudRate: 9600 }, { id: 'a', name: 'a' })
+      return { lease, port: make({ lease, clock, ...own }) }
+    }
+    const first = open()
+    await clock.advance(10)
+    const sending = first.port.send(text)
+    await clock.advance(own.bidirectional ? 20 : 4)
+    first.port.close()
+    await clock.run(Promise.all([first.lease.release(), sending]))
+    return { clock, wire, ...open() }
+  }
+
+  // in 400 real redeploys the controller once took 1795326865681 CR LF 1795326865692 for one message
+  for (const [name, make, own, least] of [
+    ['INCON', createInconLink, {}, 50],
+    ['C24, messages by silence', createC24Port, { framing: 'gap', gap: 100 }, 100]
+  ]) {
+    it(`${name}: the next one keeps its distance all the same`, async () => {
+      const { clock, wire, port, lease } = await redeployed(make, own, 'ABCD')
+      assert.equal((await clock.run(port.send('EFGH'))).outcome, 'sent')
+      const [one, two] = wire.sent
+      const end = one.at + (one.bytes.length * 10000) / 9600
+      assert.ok(two.at - end >= least - 0.01, `${two.at - end} ms`)
+      port.close()
+      await clock.run(lease.release())
+      assert.equal(clock.pending(), 0)
+    })
+  }
+
+  // ENQ AB, redeploy, ENQ CD, and 06 for AB: CD was confirmed
+  it('bidirectional: the late ACK of the one before confirms nothing', async () => {
+    const { clock, wire, port, lease } = await redeployed(createC24Port, { bidirectional: true }, 'AB')
+    clock.setTimer(() => wire.handlers.data(Buffer.of(6)), 40)
+    const { outcome } = await clock.run(port.send('CD'))
+    assert.deepEqual([outcome, wire.sent.length], ['unknown', 2])
+    port.close()
+    await clock.run(lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+})

@@ -50,6 +50,20 @@ describe('C24 port, bidirectional protocol', () => {
     assert.equal(bench.got[0].count, 5)
   })
 
+  it('does not begin inside a frame of the other side', async () => {
+    await opened({ answers: [ACK] })
+    bench.peer.say(VECTOR.subarray(0, 7))
+    const sending = bench.device.send('AB')
+    await bench.clock.advance(20)
+    assert.deepEqual(bench.peer.heard, [])
+    bench.peer.say(VECTOR.subarray(7))
+    assert.equal((await bench.run(sending)).outcome, 'confirmed')
+    assert.deepEqual(bench.peer.heard, [ACK, frameOf('AB')])
+    // four characters at 9600 bit/s behind our ACK
+    const [one, two] = bench.peer.times
+    assert.ok(two - one >= (1 + 4) * (10 / 9.6), `${two - one}`)
+  })
+
   it('a damaged frame is answered by NAK when the line is silent, and never delivered', async () => {
     await opened()
     bench.peer.say(damaged(VECTOR))

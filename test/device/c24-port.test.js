@@ -271,6 +271,8 @@ describe('C24 port, free messages', () => {
     assert.deepEqual([outcome, got, own.line.state], ['sent', ['BACK'], 'open'])
     await bench.run(own.close())
     assert.throws(() => openC24Port({ ...settings, wire, path: 'own', pool, clock, end: 'X' }), code('BAD_SETTING'))
+    // the gap of messages may be longer than that of a line
+    await clock.run(openC24Port({ ...settings, wire, path: 'own', pool, clock, gap: 20000 }).close())
     assert.equal(pool.lines().length, 1)
   })
 })

@@ -43,6 +43,18 @@ describe('listening line: DC1 and DC3', () => {
     assert.equal(bench.lease.line.stats().stops, 1)
   })
 
+  it('answers that must wait do not pile up: of 100 the latest 16', async () => {
+    let n = 0
+    const bench = await control({ reply: () => bytes(`A${n++}`) })
+    says(bench, DC3)
+    says(bench, 'q;'.repeat(100))
+    says(bench, DC1)
+    assert.deepEqual(
+      sentTexts(bench),
+      Array.from({ length: 16 }, (_, k) => `A${84 + k}`)
+    )
+  })
+
   it('a message goes out in pieces, each after the one before has left', async () => {
     const bench = await control()
     const text = 'x'.repeat(120)

@@ -90,6 +90,16 @@ describe('listening line: torn messages', () => {
 })
 
 describe('listening line: released and closed', () => {
+  it('what ends a torn message does not count as bytes of the next one', async () => {
+    const bench = await torn({ torn: { first: bytes('\r\n') } })
+    await bench.clock.advance(1000)
+    const sent = failure(bench.lease.send(bytes('next;')))
+    assert.deepEqual(sentTexts(bench).slice(1), ['\r\nnext;'])
+    await bench.run(bench.lease.release())
+    const { code, details } = await sent
+    assert.deepEqual([code, details.sent, details.of], ['LINE_CLOSED', 5, 5])
+  })
+
   it('all settle once with LINE_CLOSED and what went out; the message on the wire is not cut', async () => {
     for (const flow of ['none', 'dc']) {
       const bench = await opened({ flow })

@@ -10,6 +10,7 @@ const fs = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
 const { createNxLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
+const { LISTENERS, listeningFlow, startListening } = require('./listening-redeploys.js')
 const { startNodeRed, until } = require('./node-red.js')
 
 const LINES = ['serial', 'tcp', 'simulated']
@@ -64,7 +65,8 @@ function flowOf(settings, { turn = 0, without = '' } = {}) {
       wires: []
     }
   ])
-  return [tab, ...each].map(node => (node.id === without ? { ...node, d: true } : node))
+  const all = [tab, ...each, ...listeningFlow(settings, { turn })]
+  return all.map(node => (node.id === without ? { ...node, d: true } : node))
 }
 
 /** What one round does; the turn decides. */
@@ -73,6 +75,7 @@ const KINDS = [
   { type: 'nodes', change: turn => ({ turn }) },
   { type: 'flows', change: turn => ({ turn }) },
   { type: 'nodes', change: turn => ({ turn, without: `read-${LINES[turn % 3]}` }) },
+  { type: 'nodes', change: turn => ({ turn, without: `node-${LISTENERS[turn % 2]}` }) },
   { type: 'reload', change: turn => ({ turn }) }
 ]
 
@@ -87,12 +90,15 @@ async function startLines() {
   }
   const pty = serveOnPty({ wire: wires[0], link: path.join(folder, 'line') })
   const tcp = await serveOnTcp({ wire: wires[1] })
+  const listening = await startListening(folder)
   const common = { baudRate: 115200, latenessBound: 20 }
   return {
     pty,
     tcp,
+    listening,
     connections,
     settings: {
+      ...listening.settings,
       serial: { ...common, transport: 'serial', path: pty.path() },
       tcp: { ...common, transport: 'tcp', host: '127.0.0.1', port: tcp.port },
       simulated: { ...common, transport: 'simulated' }
@@ -100,6 +106,7 @@ async function startLines() {
     async close() {
       pty.close()
       await tcp.close()
+      await listening.close()
       fs.rmSync(folder, { recursive: true, force: true })
     }
   }
@@ -117,12 +124,15 @@ const leftBehind = (now, start) =>
 /** Values of all lines, newer than now. */
 async function allFlow(red) {
   red.forget()
-  await Promise.all(LINES.map(line => red.next(`debug-${line}`, value => value.K0 !== undefined, 15000)))
+  const values = LINES.map(line => red.next(`debug-${line}`, value => value.K0 !== undefined, 15000))
+  const messages = LISTENERS.map(device => red.next(`debug-${device}`, value => /^[A-Z]+ /.test(value), 15000))
+  await Promise.all([...values, ...messages])
 }
 
 /**
  * @param {{ rounds: number, red?: string, node?: string, product?: string, tell?: (text: string) => void }} options
- * @returns {Promise<{ rounds: number, drops: number, unplugs: number, connections: number, slowest: number, ms: number, before: object, after: object }>}
+ * @returns {Promise<{ rounds: number, drops: number, unplugs: number, connections: number, slowest: number, ms: number, heard: object,
+ *   before: object, after: object }>} heard: messages that the devices of the listening lines got
  * @throws {import('node:assert').AssertionError} if something is left behind, does not come back or takes longer than 2 s
  */
 async function redeploys({ rounds, tell = _text => {}, ...which }) {
@@ -139,7 +149,8 @@ async function redeploys({ rounds, tell = _text => {}, ...which }) {
     const done = await rounded({ red, lines, rounds, tell })
     await allFlow(red)
     await red.deploy([])
-    assert.equal(await until(() => lines.tcp.connections() === 0, { what: 'TCP connections to end' }), true)
+    const connected = () => lines.tcp.connections() + lines.listening.tcp.connections()
+    assert.equal(await until(() => connected() === 0, { what: 'TCP connections to end' }), true)
     let after
     await until(async () => !leftBehind((after = await red.count()), before), {
       what: () => `everything to be closed: ${JSON.stringify({ before, after })}`,
@@ -150,7 +161,9 @@ async function redeploys({ rounds, tell = _text => {}, ...which }) {
     assert.deepEqual(ports, [], 'no serial port stays open')
     assert.ok(after.heap - before.heap < 40e6, `the heap grew from ${before.heap} to ${after.heap}`)
     assert.equal(await red.stop(), 'ended', 'Node-RED ends by itself when it is asked to')
-    return { ...done, before, after }
+    const heard = lines.listening.check()
+    assert.ok(Math.min(...Object.values(heard)) > rounds / 10, `the devices got only ${JSON.stringify(heard)}`)
+    return { ...done, heard, before, after }
   } finally {
     if (red.child.exitCode === null) await red.stop()
     await lines.close()
@@ -165,27 +178,39 @@ async function deployed(red, flow, type) {
   await until(() => started() > before, { what: 'the flows to start', every: 5 })
 }
 
+const ptys = ({ pty, listening }) => [pty, listening.pty]
+const replug = lines => ptys(lines).forEach(pty => pty.replug())
+const unplug = (lines, done) => {
+  done.unplugs++
+  for (const pty of ptys(lines)) pty.unplug()
+}
+const drop = ({ tcp, listening }, done) => {
+  done.drops++
+  tcp.drop()
+  listening.tcp.drop()
+}
+
 async function rounded({ red, lines, rounds, tell }) {
   const start = Date.now()
   const done = { rounds: 0, drops: 0, unplugs: 0, slowest: 0, ms: 0 }
   for (let turn = 1; turn <= rounds; turn++) {
     const kind = KINDS[turn % KINDS.length]
     const began = Date.now()
-    if (turn % 7 === 0) (done.drops++, lines.tcp.drop())
-    if (turn % 25 === 0) (done.unplugs++, lines.pty.unplug())
-    if (turn % 25 === 1) lines.pty.replug()
+    if (turn % 7 === 0) drop(lines, done)
+    if (turn % 25 === 0) unplug(lines, done)
+    if (turn % 25 === 1) replug(lines)
     await deployed(red, flowOf(lines.settings, kind.change(turn)), kind.type)
     done.rounds = turn
     done.slowest = Math.max(done.slowest, Date.now() - began)
     assert.ok(done.slowest < DEPLOY_MS, `deploy ${turn} (${kind.type}) took ${done.slowest} ms`)
     if (turn % 50 === 0) {
-      lines.pty.replug()
+      replug(lines)
       await red.deploy(flowOf(lines.settings))
       await allFlow(red)
       if (turn % 100 === 0) tell(`${turn} deploys, slowest ${done.slowest} ms, all lines deliver`)
     }
   }
-  lines.pty.replug()
+  replug(lines)
   await red.deploy(flowOf(lines.settings))
   return { ...done, connections: lines.connections.tcp, ms: Date.now() - start }
 }

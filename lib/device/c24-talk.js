@@ -172,7 +172,7 @@ class C24Talk {
     if (now >= due) return { error: this.#deadlineError(deadline), sent: 0 }
     const flight = { crossed: false, crossing: null, over: false, late: null }
     this.#flight = flight
-    const match = message => this.#matches(message, { flight, frame })
+    const match = (message, times) => this.#matches(message, { flight, frame, times })
     const left = due === Infinity ? 0 : due - now
     try {
       const { answer } = await this.#lease.send(frame, {
@@ -193,22 +193,20 @@ class C24Talk {
   }
 
   /** Asked by the line for every message that comes while this frame is out, and once more for an answer that comes too late. */
-  #matches(message, { flight, frame }) {
+  #matches(message, { flight, frame, times }) {
     if (!isAnswer(message)) {
-      if (!flight.over && this.#isCrossing(message, frame)) Object.assign(flight, { crossed: true, crossing: message })
+      if (times && this.#isCrossing(message, { frame, ...times }))
+        Object.assign(flight, { crossed: true, crossing: message })
       return false
     }
     if (flight.over) flight.late?.(message)
     return true
   }
 
-  /** Whether this message began before our frame had ended: by the wire's time, as both sides sent at once. */
-  #isCrossing({ bytes }, frame) {
-    const { name, character } = this.#settings
-    const ours = this.#lease.line.trace().findLast(({ dir, note }) => dir === 'out' && note === name)
-    if (!ours) return false
-    const began = this.#clock.wall() - (bytes.length + 5) * character
-    return began < ours.t + frame.length * character
+  /** Whether this message began before our frame, which went out since then, had ended: both sides sent at once. */
+  #isCrossing({ bytes }, { frame, since, now }) {
+    const { character } = this.#settings
+    return now - (bytes.length + 5) * character < since + frame.length * character
   }
 
   /**

@@ -169,7 +169,8 @@ class Courier {
   /** Whether this message answers the letter on the wire. @param {any} message */
   claims(message) {
     const letter = this.#letter
-    if (!letter?.match || !letter.handedOver || letter.answer || !letter.match(message)) return false
+    if (!letter?.match || !letter.handedOver || letter.answer) return false
+    if (!letter.match(message, { since: letter.piece.at, now: this.#clock.now() })) return false
     this.#recorder.message(message)
     letter.answer = message
     // one that comes before the computed end is kept until then

@@ -86,7 +86,8 @@ class Lease {
    * @param {object} [options] times in ms
    * @param {number} [options.quiet] silence on the line before it (half duplex); 0
    * @param {number} [options.after] nothing of ours follows it for so long; 0
-   * @param {(message: any) => boolean} [options.match] tells the message that answers it, which no listener gets
+   * @param {(message: any, times?: { since: number, now: number }) => boolean} [options.match] tells the message that answers it, which no listener
+   *   gets; `since` this one is on the wire (ms of the clock; none: it is not any more, and would be answered late)
    * @param {number} [options.timeout] until that message, from the end of sending; needed with match
    * @param {number} [options.deadline] that it may wait for its turn; 0: no limit
    * @param {string} [options.label] for the trace

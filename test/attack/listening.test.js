@@ -2,7 +2,7 @@
 
 const assert = require('node:assert/strict')
 const { createC24Port, createInconLink, createPool } = require('../../lib')
-const { createVirtualClock } = require('../../lib/sim')
+const { createRandom, createVirtualClock } = require('../../lib/sim')
 const { c24Bench } = require('../device/c24-bench')
 const { inconBench } = require('../device/incon-bench')
 const { createWire } = require('../line/support/bench')
@@ -384,4 +384,88 @@ describe('attack: a redeploy right behind a message', () => {
     await clock.run(lease.release())
     assert.equal(clock.pending(), 0)
   })
+})
+
+describe('attack: the wall clock is set back while an acknowledgement is awaited', () => {
+  // the frame that the module sent 500 ms later counted as sent at the same time: ours was sent again, and came twice
+  it('c24 has priority: a frame that came later is no crossing', async () => {
+    const b = c24Bench({ port: { bidirectional: true, priority: 'c24' } })
+    await b.clock.advance(5)
+    const { wall } = b.clock
+    b.clock.setTimer(() => (b.clock.wall = () => wall() - 3600000), 100)
+    b.peer.sayIn(500, frame('XY'))
+    const { outcome, attempts } = await b.send('AB')
+    assert.deepEqual([outcome, attempts, b.values()], ['unknown', 1, ['XY']])
+    assert.equal(b.peer.hex(), '0501004142840006')
+    await b.close()
+  })
+})
+
+/** Collects what nobody needs, so that what is left can be measured. */
+const collectGarbage = () => {
+  require('node:v8').setFlagsFromString('--expose-gc')
+  require('node:vm').runInNewContext('gc')()
+  const { heapUsed, external } = process.memoryUsage()
+  return heapUsed + external
+}
+
+describe('attack: floods', () => {
+  const block = (hex, length = 65536) => Buffer.alloc(length, Buffer.from(hex, 'hex'))
+  const noise = createRandom(7)
+  const FLOODS = {
+    noise: Buffer.from(Array.from({ length: 65536 }, () => noise.integer(0, 255))),
+    DC3: block('13'),
+    'DC3 and DC1': block('1311'),
+    ENQ: block('05'),
+    'ENQ and the greatest length': block(`05FFFF${'41'.repeat(300)}`),
+    ACK: block('06'),
+    'ACK and ENQ': block('0605'),
+    NAK: block('15'),
+    'text without end': block('41')
+  }
+  const inconAlone = () => {
+    const clock = createVirtualClock()
+    const wire = createWire(clock)
+    const pool = createPool({ clock, random: () => 0.5 })
+    const lease = pool.open({ transport: 'simulated', wire }, { id: 'a', name: 'a' })
+    const device = createInconLink({ lease, clock })
+    const got = []
+    device.listen(message => got.push(message))
+    const close = () => {
+      device.close()
+      return clock.run(lease.release())
+    }
+    return { clock, got, close, peer: { say: bytes => wire.handlers.data(bytes), heard: [] } }
+  }
+  const OPENS = {
+    'C24, end code': [() => c24Bench({ port: { flow: 'dc', transparent: '10' } }), Buffer.from('OK\r\n')],
+    'C24, frames': [() => c24Bench({ port: { first: '02', last: '03' } }), Buffer.from('\x02OK\x03')],
+    'C24, bidirectional': [() => c24Bench({ port: { bidirectional: true } }), frame('OK')],
+    INCON: [inconAlone, Buffer.from('OK\r\n')]
+  }
+  for (const [name, [open, good]] of Object.entries(OPENS)) {
+    it(`${name}: nothing grows, and after a silence all is as before`, async () => {
+      for (const [kind, bytes] of Object.entries(FLOODS)) {
+        const b = open()
+        await b.clock.advance(5)
+        const before = collectGarbage()
+        for (let n = 0; n < 8; n++) {
+          b.peer.say(bytes)
+          await b.clock.advance(1)
+        }
+        b.peer.heard.length = 0
+        b.got.length = 0
+        const grown = collectGarbage() - before
+        assert.ok(grown < 10e6, `${kind}: ${grown} bytes`)
+        // the first one may end what the flood has begun
+        for (let n = 0; n < 2; n++) {
+          await b.clock.advance(1000)
+          b.peer.say(good)
+        }
+        assert.deepEqual([b.got.at(-1).value, b.got.at(-1).complete], ['OK', true], kind)
+        await b.close()
+        assert.equal(b.clock.pending(), 0, kind)
+      }
+    })
+  }
 })

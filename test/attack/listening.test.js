@@ -469,3 +469,78 @@ describe('attack: floods', () => {
     })
   }
 })
+
+describe('attack: unplugged or deployed at any moment of an acknowledged message', () => {
+  const FRAME = 13 // ENQ, length, 8 characters, sum
+
+  /** A module with timer 0 that answers what came whole, 20 ms later and whoever listens then. */
+  const module = clock => {
+    const taken = []
+    let end = null
+    let bytes = []
+    let coming = []
+    const take = byte => {
+      bytes.push(byte)
+      if (bytes.length < FRAME) return
+      taken.push(Buffer.from(bytes.slice(3, 11)).toString())
+      bytes = []
+      clock.setTimer(() => end?.data(Buffer.of(6)), 20)
+    }
+    return {
+      taken,
+      connect(handlers) {
+        end = handlers
+        const arrive = (byte, n) => coming.push(clock.setTimer(() => take(byte), ((n + 1) * 10000) / 9600))
+        return { write: out => out.forEach(arrive), close: () => void (end = null) }
+      },
+      unplug() {
+        coming.forEach(clock.clearTimer)
+        coming = []
+        bytes = []
+        end?.closed()
+        end = null
+      }
+    }
+  }
+
+  for (const own of [{}, { priority: 'c24' }, { attempts: 1 }]) {
+    it(`${JSON.stringify(own)}: none twice, and confirmed is what was taken`, async () => {
+      for (const how of [{ unplug: true }, { deploy: true }, { unplug: true, deploy: true }]) {
+        for (let at = 0; at < 75; at += 1.1) {
+          const clock = createVirtualClock()
+          const wire = module(clock)
+          const pool = createPool({ clock, random: () => 0.5 })
+          const open = () => {
+            const lease = pool.open({ transport: 'simulated', wire, baudRate: 9600 }, { id: 'a', name: 'a' })
+            return { lease, port: createC24Port({ lease, clock, bidirectional: true, ...own }) }
+          }
+          let user = open()
+          await clock.advance(10)
+          const sending = ['MESSAGE1', 'MESSAGE2'].map(text => user.port.send(text))
+          await clock.advance(at)
+          if (how.unplug) wire.unplug()
+          if (how.deploy) {
+            user.port.close()
+            const released = user.lease.release()
+            user = open()
+            await clock.run(released)
+          }
+          const outcomes = await clock.run(Promise.all(sending))
+          await clock.advance(500)
+          outcomes.push(await clock.run(user.port.send('MESSAGE3')))
+          const where = JSON.stringify([how, at, wire.taken, outcomes.map(({ outcome }) => outcome)])
+          assert.equal(new Set(wire.taken).size, wire.taken.length, where)
+          for (const [n, { outcome }] of outcomes.entries()) {
+            const taken = wire.taken.includes(`MESSAGE${n + 1}`)
+            if (outcome === 'confirmed') assert.ok(taken, where)
+            if (outcome === 'failed') assert.ok(!taken, where)
+          }
+          assert.equal(outcomes[2].outcome, 'confirmed', where)
+          user.port.close()
+          await clock.run(user.lease.release())
+          assert.equal(clock.pending(), 0, where)
+        }
+      }
+    })
+  }
+})

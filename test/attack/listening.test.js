@@ -40,7 +40,7 @@ describe('attack: hostile payloads for what is sent as messages', () => {
     it(`${name}: what is far too long is refused at once`, async () => {
       const b = open()
       await b.clock.advance(5)
-      const values = [longOnPaper(), new Float64Array(2e6), new Uint16Array(2e6), '가'.repeat(2e6), new Uint8Array(2e6)]
+      const values = [longOnPaper(), new Float64Array(1e6), new Uint16Array(1e6), '가'.repeat(1e6), new Uint8Array(1e6)]
       for (const value of values) {
         let outcome
         const ms = await blocked(async () => (outcome = await b.run(b.device.send(value))))
@@ -320,7 +320,7 @@ describe('attack: unplugged or deployed at any moment of a message', () => {
   for (const [name, kind] of Object.entries(KINDS)) {
     it(`${name}: one outcome each, none twice, none glued to another`, async () => {
       for (const how of [{ unplug: true }, { deploy: true }, { unplug: true, deploy: true }]) {
-        for (let at = 0; at < (name === 'INCON' ? 80 : 30); at += 0.7) {
+        for (let at = 0; at < (name === 'INCON' ? 80 : 30); at += name === 'INCON' ? 1.9 : 0.9) {
           const { settled, seen, last } = await run(kind, { ...how, at })
           const where = `${JSON.stringify(how)} at ${at}: ${JSON.stringify([...settled, seen])}`
           assert.equal(settled.size, 3, where)
@@ -445,27 +445,27 @@ describe('attack: floods', () => {
   }
   for (const [name, [open, good]] of Object.entries(OPENS)) {
     it(`${name}: nothing grows, and after a silence all is as before`, async () => {
+      const b = open()
+      await b.clock.advance(5)
+      const before = collectGarbage()
       for (const [kind, bytes] of Object.entries(FLOODS)) {
-        const b = open()
-        await b.clock.advance(5)
-        const before = collectGarbage()
-        for (let n = 0; n < 8; n++) {
+        for (let n = 0; n < 2; n++) {
           b.peer.say(bytes)
           await b.clock.advance(1)
         }
-        b.peer.heard.length = 0
-        b.got.length = 0
-        const grown = collectGarbage() - before
-        assert.ok(grown < 10e6, `${kind}: ${grown} bytes`)
         // the first one may end what the flood has begun
         for (let n = 0; n < 2; n++) {
           await b.clock.advance(1000)
           b.peer.say(good)
         }
         assert.deepEqual([b.got.at(-1).value, b.got.at(-1).complete], ['OK', true], kind)
-        await b.close()
-        assert.equal(b.clock.pending(), 0, kind)
+        b.peer.heard.length = 0
+        b.got.length = 0
       }
+      const grown = collectGarbage() - before
+      assert.ok(grown < 10e6, `${grown} bytes`)
+      await b.close()
+      assert.equal(b.clock.pending(), 0)
     })
   }
 })
@@ -506,7 +506,7 @@ describe('attack: unplugged or deployed at any moment of an acknowledged message
   for (const own of [{}, { priority: 'c24' }, { attempts: 1 }]) {
     it(`${JSON.stringify(own)}: none twice, and confirmed is what was taken`, async () => {
       for (const how of [{ unplug: true }, { deploy: true }, { unplug: true, deploy: true }]) {
-        for (let at = 0; at < 75; at += 1.1) {
+        for (let at = 0; at < 75; at += 2.3) {
           const clock = createVirtualClock()
           const wire = module(clock)
           const pool = createPool({ clock, random: () => 0.5 })

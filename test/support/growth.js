@@ -2,6 +2,9 @@
 
 const FACTOR = 4
 const ROUNDS = 5
+const ATTEMPTS = 3
+/** A growth with the square is never below this. */
+const DOUBTFUL = 7
 
 const fastest = run => {
   let best = Infinity
@@ -21,7 +24,11 @@ const fastest = run => {
  */
 const growth = (run, size) => {
   run(size)
-  return fastest(() => run(size * FACTOR)) / fastest(() => run(size))
+  let least = Infinity
+  // other programs on the machine can only make it look worse: then once more
+  for (let attempt = 0; attempt < ATTEMPTS && least > DOUBTFUL; attempt++)
+    least = Math.min(least, fastest(() => run(size * FACTOR)) / fastest(() => run(size)))
+  return least
 }
 
 module.exports = { growth }

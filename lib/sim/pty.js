@@ -31,7 +31,7 @@ function createPty({ link } = {}) {
   const onData = []
   /** @type {((plugged: boolean) => void)[]} */
   const onPlugged = []
-  /** @type {{ stream: import('node:tty').ReadStream, slave: number, device: string } | null} */
+  /** @type {{ stream: import('node:tty').ReadStream, raw: import('node:tty').ReadStream, slave: number, device: string } | null} */
   let port = null
 
   function plug() {
@@ -43,8 +43,9 @@ function createPty({ link } = {}) {
   }
   function unplug() {
     if (!port) return
-    const { stream, slave, device } = port
+    const { stream, raw, slave, device } = port
     port = null
+    raw.destroy()
     fs.closeSync(slave)
     stream.destroy()
     if (link) removeLink(link, device)
@@ -68,15 +69,14 @@ function createPty({ link } = {}) {
 function openPort(binding, onData) {
   const pair = binding.open(80, 24)
   const stream = new tty.ReadStream(pair.master)
-  // raw before the first open: else the terminal's own echo answers the first bytes. Destroying it closes its
-  // duplicate handle, the descriptor itself stays open: without it a master without reader would see a hang-up
+  // raw before the first open: else the terminal's own echo answers the first bytes. It is never read, and lives as long as the port: newer versions
+  // of Node.js give a terminal back as they found it when a stream on it is destroyed
   const raw = new tty.ReadStream(pair.slave)
   raw.setRawMode(true)
-  raw.destroy()
   stream.on('data', onData)
   // EIO when the other side goes: the unplugged port is only read no more
   stream.on('error', () => {})
-  return { stream, slave: pair.slave, device: pair.pty }
+  return { stream, raw, slave: pair.slave, device: pair.pty }
 }
 
 function freeLink(link) {

@@ -6,7 +6,7 @@ const net = require('node:net')
 const os = require('node:os')
 const path = require('node:path')
 const { SerialPort } = require('serialport')
-const { createNxLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
+const { createNxLine, createPty, serveOnPty, serveOnTcp } = require('../../lib/sim')
 
 const hex = text => Buffer.from(text.replace(/\s/g, ''), 'hex')
 const QUERY = hex('01 E2 23 03 C0 00 80 D8 5D') // read M0..M127
@@ -77,6 +77,19 @@ describe('simulated line on a virtual serial port', function () {
       served.close()
     }
     assert.strictEqual(fs.lstatSync(link, { throwIfNoEntry: false }), undefined)
+  })
+
+  it('does not echo what a station says before anybody has opened it', async () => {
+    const pty = createPty()
+    const heard = new Promise(resolve => pty.onData(resolve))
+    pty.write(Buffer.from('STATE 3\r\n'))
+    // the master reads in order: an echo of the terminal would come before this byte
+    const slave = fs.openSync(pty.path(), fs.constants.O_RDWR | fs.constants.O_NOCTTY)
+    fs.writeSync(slave, 'y')
+    const bytes = /** @type {Buffer} */ (await heard)
+    fs.closeSync(slave)
+    pty.close()
+    assert.equal(bytes.toString(), 'y')
   })
 
   it('is unplugged and replugged under the same name', async () => {

@@ -11,8 +11,8 @@ const os = require('node:os')
 const path = require('node:path')
 const { createPool, openChinoRegulator, openNxPlc } = require('../../lib')
 const { createLine, createRandom, serveOnPty } = require('../../lib/sim')
+const { startVersions } = require('./versions.js')
 
-const BLOCK = 10
 const CHANGE = 50 // ms between two changes of what a station holds
 const ASK = 170
 const WRITE = 110
@@ -30,53 +30,28 @@ const chino = (station, interval) => ({
 })
 const STATIONS = [nx, chino(11, 200), chino(12, 250), chino(13, 400)]
 
-/** Ten words that belong together and to one station: no two versions, and no two stations, share them. */
-const wordsOf = (station, version) =>
-  Array.from({ length: BLOCK }, (_, n) => (n === 0 ? version : version * (n + 3) + station * 257 + n) & 0xffff)
-
-/** When a station began to hold a version, and its set point. */
-function createHistory() {
-  const changes = []
-  return {
-    changes,
-    at: (time, value) => void changes.push({ time, value }),
-    /** What was held at any moment between two times. */
-    between: (from, to) =>
-      changes
-        .filter(({ time }, n) => time <= to && (changes[n + 1]?.time ?? Infinity) >= from)
-        .map(({ value }) => value)
-  }
-}
-
 /** The simulated end: it changes what it holds and remembers when. */
 function createFarEnd(baudRate, link) {
   const rows = STATIONS.map(({ device, station }) => ({ device, station }))
   const { wire, stations } = createLine({ stations: rows, baudRate, turnaround: TURNAROUND, quiet: true })
   const server = serveOnPty({ wire, link })
-  const histories = STATIONS.map(createHistory)
-  let version = 0
-  const change = () => {
-    version++
-    STATIONS.forEach(({ station, first }, n) => {
-      wordsOf(station, version).forEach((word, at) => stations[n].set(`${first}${at}`, word))
-      histories[n].at(performance.now(), version)
-    })
-  }
-  change()
-  const timer = setInterval(change, CHANGE)
+  const held = startVersions(
+    STATIONS.map(({ station, first }, n) => ({ memory: stations[n], number: station, first })),
+    { every: CHANGE }
+  )
   return {
-    histories,
+    held,
     stations,
     wire,
     close: () => {
-      clearInterval(timer)
+      held.stop()
       server.close()
     }
   }
 }
 
 /** One station as our library sees it, with the judge of its values. */
-function createNearEnd(shape, device, { history, wrong }) {
+function createNearEnd(shape, device, { held, wrong }) {
   const { station, block, setPoint } = shape
   const seen = { cycles: 0, values: 0, writes: 0, asks: 0, failures: [] }
   // what was sent as set point: from when it may have been there, and until when
@@ -91,8 +66,7 @@ function createNearEnd(shape, device, { history, wrong }) {
   }
   const isHeld = (item, value, from, to) => {
     if (item === setPoint) return sent.some(each => each.value === value && each.from <= to && each.until >= from)
-    const [version] = value
-    return history.between(from, to).includes(version) && String(value) === String(wordsOf(station, version))
+    return held(value, from, to)
   }
   const subscription = device.subscribe({ items: [block, setPoint], interval: shape.interval }, (results, { ms }) => {
     seen.cycles++
@@ -154,7 +128,7 @@ async function mixedLine({ seconds = 60, baudRate = 19200, seed = 1 } = {}) {
   try {
     // the first answer of each: from here on the rate counts
     await Promise.all(devices.map((device, n) => device.read([STATIONS[n].setPoint])))
-    const near = devices.map((device, n) => createNearEnd(STATIONS[n], device, { history: far.histories[n], wrong }))
+    const near = devices.map((device, n) => createNearEnd(STATIONS[n], device, { held: (...value) => far.held.isHeld(n, ...value), wrong }))
     const { busy } = devices[0].line.stats()
     const from = performance.now()
     let turn = 0

@@ -5,7 +5,17 @@ const globals = require('globals')
 const browser = { ...globals.browser, RED: 'readonly', $: 'readonly', nxlineSerialPlc: 'readonly' }
 
 module.exports = [
-  { ignores: ['node_modules/', 'coverage/', 'types/', 'resources/editor.js', '.cache/', 'test/system/node_modules/'] },
+  {
+    ignores: [
+      'node_modules/',
+      'coverage/',
+      'types/',
+      'resources/editor.js',
+      '.cache/',
+      'test/system/node_modules/',
+      'test/mutation/node_modules/'
+    ]
+  },
   js.configs.recommended,
   {
     files: ['**/*.js'],

@@ -88,11 +88,8 @@ const strCopy = (dest, source, most) => {
   dest[most + 1] = 0
 }
 
-/** What a C program sees in an array of characters. @param {Buffer} text */
-const cString = text => {
-  const end = text.indexOf(0)
-  return text.toString('latin1', 0, end < 0 ? text.length : end)
-}
+/** What a C program sees in an array of characters. @param {Buffer} text with a NUL in it */
+const cString = text => text.toString('latin1', 0, text.indexOf(0))
 
 /**
  * The manual's receiving example: a full buffer, or a line feed as its last byte at the moment of the scan, is a message.

@@ -1,5 +1,6 @@
 'use strict'
 const { PlcError } = require('../../error')
+const { readAcknowledged } = require('./acknowledge')
 const { OVERHEAD, START, missingBetween, seal, unseal } = require('./check')
 
 /**
@@ -7,14 +8,14 @@ const { OVERHEAD, START, missingBetween, seal, unseal } = require('./check')
  * does not belong to the text, and an empty line is none. The controller's buffers hold 256 bytes.
  *
  * @typedef {object} Message
- * @property {'data'|'damaged'} kind damaged: some of its bytes are certainly not what was sent
+ * @property {'data'|'damaged'|'ack'|'start'} kind damaged: some of its bytes are certainly not what was sent; ack, start: acknowledge.js
  * @property {Buffer} bytes without line end; in the checked format without number and check, unless damaged
  * @property {boolean} complete that it is one whole line, as far as can be known
  * @property {Reason} [reason] why it is not
  * @property {number|null} [number] checked format: of the line, or null if it has none
  * @property {number} [lost] checked format: lines that are missing before this one
  * @property {boolean} [repeated] checked format: it is the line before once more
- * @typedef {'silence'|'full'|'tail'|'noLineFeed'|'unprintable'|'noCheck'|'check'|'reopened'} Reason silence: no line feed within the silence;
+ * @typedef {'silence'|'full'|'tail'|'noLineFeed'|'unprintable'|'noCheck'|'check'|'number'|'reopened'} Reason silence: no line feed within the silence;
  *   full: as many bytes as a buffer holds, without one; tail: the rest of such a line; noLineFeed: a carriage return without one
  */
 
@@ -52,6 +53,16 @@ const createChecker = () => {
     return { kind: 'data', bytes: text, complete: true, number, lost }
   }
   return read
+}
+
+/** The acknowledged format: what a line says is judged by the device, whose memory outlives the splitter. @returns {Message} */
+const acknowledged = (bytes, reason) => {
+  if (reason) return { kind: 'damaged', bytes, complete: false, reason }
+  const opened = readAcknowledged(bytes)
+  if (opened.kind === 'damaged') return { kind: 'damaged', bytes, complete: false, reason: opened.reason }
+  const { kind, number } = opened
+  if (kind === 'line') return { kind: 'data', bytes: opened.text, complete: true, number }
+  return { kind, bytes, complete: true, number }
 }
 
 /** Cuts what comes from a controller into lines. Made by {@link createLineSplitter}. */
@@ -112,31 +123,36 @@ class LineSplitter {
 }
 
 /**
- * @param {{ most?: number, silence?: number, ascii?: boolean, checked?: boolean }} [options] most: bytes of a line with its end (256); silence:
- *   ms after which a line is taken as torn (200; 0: never); ascii: only printable ASCII can come (true); checked: `#NN text*HH` (check.js)
+ * @typedef {object} Cut how lines are cut
+ * @property {number} [most] bytes of a line with its end (256)
+ * @property {number} [silence] ms after which a line is taken as torn (200; 0: never)
+ * @property {boolean} [ascii] only printable ASCII can come (true)
+ * @property {boolean} [checked] `#NN text*HH` (check.js)
+ * @property {boolean} [acknowledge] checked, and acknowledged (acknowledge.js)
  */
-const createLineSplitter = ({ most = BUFFER, silence = 200, ascii = true, checked = false } = {}) => {
-  const read = checked ? createChecker() : (bytes, reason) => plain(bytes, reason, { ascii })
-  return new LineSplitter({ most, silence, read })
+
+/** @param {Cut} [options] */
+const createLineSplitter = ({ most = BUFFER, silence = 200, ascii = true, checked = false, acknowledge = false } = {}) => {
+  const read = (bytes, reason) => plain(bytes, reason, { ascii })
+  return new LineSplitter({ most, silence, read: acknowledge ? acknowledged : checked ? createChecker() : read })
 }
 
 /**
  * How lines are cut, for `lease.listen`. The same key means the same lines.
- * @param {{ most?: number, silence?: number, ascii?: boolean, checked?: boolean }} [options] of {@link createLineSplitter}
+ * @param {Cut} [options]
  * @returns {{ key: string, create: () => LineSplitter }}
  */
-const inconFraming = ({ most = BUFFER, silence = 200, ascii = true, checked = false } = {}) => ({
-  key: `INCON lines of ${most} bytes, torn after ${silence} ms${ascii ? ', ASCII' : ''}${checked ? ', checked' : ''}`,
-  create: () => createLineSplitter({ most, silence, ascii, checked })
-})
+const inconFraming = ({ most = BUFFER, silence = 200, ascii = true, checked = false, acknowledge = false } = {}) => {
+  const more = [...(ascii ? ['ASCII'] : []), ...(acknowledge ? ['acknowledged'] : checked ? ['checked'] : [])]
+  return {
+    key: [`INCON lines of ${most} bytes`, `torn after ${silence} ms`, ...more].join(', '),
+    create: () => createLineSplitter({ most, silence, ascii, checked, acknowledge })
+  }
+}
 
 const refusal = (value, reason) => new PlcError('BAD_VALUE', { item: 'the line', value, reason })
 
-const PLACE = { least: 0x21, most: 0x7e }
-const nameOf = byte => {
-  const hex = byte.toString(16).toUpperCase().padStart(2, '0')
-  return byte >= PLACE.least && byte <= PLACE.most ? String.fromCharCode(byte) : `${hex}h`
-}
+const nameOf = byte => `${byte.toString(16).toUpperCase().padStart(2, '0')}h`
 
 /** @returns {Buffer} the bytes of a text or of bytes, without the line end that it may have */
 const bodyOf = (value, encoding) => {
@@ -152,7 +168,7 @@ const bodyOf = (value, encoding) => {
   if (strange !== undefined)
     throw refusal(
       value,
-      `${strange > 0x7e ? 'a letter beyond ASCII' : nameOf(strange)} is no printable ASCII; send it as bytes`
+      `${strange > 0x7f ? 'a letter beyond ASCII' : nameOf(strange)} is no printable ASCII; send it as bytes`
     )
   if (encoding === 'latin1' && text.toString('latin1') !== value.replace(/\r?\n$/, '')) {
     throw refusal(value, 'it has letters that latin1 does not have')

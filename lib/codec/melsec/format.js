@@ -18,7 +18,7 @@ const FRAME_SILENCE = 50
 const ACK_SILENCE = 2
 
 const bad = (setting, value, reason) => new PlcError('BAD_SETTING', { setting, value, reason })
-const shown = bytes => (bytes.length === 0 ? 'empty' : Buffer.from(bytes).toString('hex').toUpperCase())
+const shown = bytes => Buffer.from(bytes).toString('hex').toUpperCase()
 
 const number = (setting, value, { least, most }) => {
   if (Number.isInteger(value) && value >= least && value <= most) return value

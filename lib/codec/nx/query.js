@@ -146,7 +146,6 @@ function answerInfoLength(query) {
 function decodeValues(query, info, station) {
   const kinds = answerKinds(query)
   const wrong = reason => new PlcError('BAD_ANSWER', { station, reason })
-  if (info.length !== answerInfoLength(query)) throw wrong(`${info.length} bytes instead of ${answerInfoLength(query)}`)
   if (!kinds) {
     if (info[0] !== 0) throw wrong(`acknowledgement ${hex(info[0])} instead of 00`)
     return true

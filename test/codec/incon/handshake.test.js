@@ -33,6 +33,55 @@ describe('INCON SerialLinkSend', () => {
     assert.strictEqual(nc.look(), null)
   })
 
+  it('a length that stays is sent once, and again after it was zero', () => {
+    const link = createHandshake()
+    const nc = createNcSender(link)
+    link.buffer.write('A')
+    link.length = 1
+    assert.strictEqual(`${nc.look()}`, 'A')
+    nc.sent()
+    assert.deepStrictEqual([nc.look(), link.length, link.finish], [null, 1, 1])
+    link.length = 0
+    assert.strictEqual(nc.look(), null)
+    link.length = 1
+    assert.strictEqual(`${nc.look()}`, 'A')
+  })
+
+  it('a text that was handed over is not exchanged while it is sent', () => {
+    const link = createHandshake()
+    const plc = createSendProgram(link)
+    plc.scan(Buffer.from('ABC'))
+    plc.scan(Buffer.from('DE'))
+    assert.deepStrictEqual([link.length, `${link.buffer.subarray(0, 3)}`], [3, 'ABC'])
+  })
+
+  it('a length beyond the buffer: as many bytes as it has', () => {
+    const link = createHandshake()
+    assert.strictEqual(link.buffer.length, 256)
+    createSendProgram(link).scan(Buffer.alloc(300, 0x41))
+    assert.strictEqual(link.length, 256)
+    link.length = 1000
+    assert.strictEqual(createNcSender(link).look()?.length, 256)
+  })
+
+  it('of the two programs only the one of the manual leaves finish, unless told otherwise', () => {
+    const mCode = { flag: true, data: 68, finish: 0 }
+    for (const [make, finish] of /** @type {[any, number][]} */ ([
+      [link => createM68Example(link), 1],
+      [link => createM68Example(link, { clears: 'finish' }), 0],
+      [link => createSendProgram(link), 0],
+      [link => createSendProgram(link, { clears: 'length' }), 1]
+    ])) {
+      const link = createHandshake()
+      const plc = make(link)
+      const scan = () => plc.scan(make.toString().includes('M68') ? mCode : TEST)
+      scan()
+      link.finish = 1
+      scan()
+      assert.deepStrictEqual([link.length, link.finish], [0, finish], make.toString())
+    }
+  })
+
   it('other M codes send nothing', () => {
     const link = createHandshake()
     const plc = createM68Example(link)
@@ -65,6 +114,13 @@ describe('INCON SerialLinkSend', () => {
       assert.strictEqual(scansUntilDone(plc, nc, TEST)?.stillSending, false, clears)
       assert.strictEqual(scansUntilDone(plc, nc, TEST)?.stillSending, stillSending, clears)
     }
+  })
+
+  it('a program without anything to send leaves the structure alone', () => {
+    const link = createHandshake()
+    link.finish = 1
+    assert.strictEqual(createSendProgram(link).scan(null), false)
+    assert.deepStrictEqual([link.length, link.finish], [0, 1])
   })
 
   it('after a stale finish the next text never reaches the line', () => {
@@ -101,6 +157,32 @@ describe('INCON SerialLinkRecv', () => {
     assert.deepStrictEqual([link.length, link.finish], [0, 1])
     assert.strictEqual(plc.scan(), null)
     assert.deepStrictEqual([link.length, link.finish, nc.lost], [0, 0, 0])
+  })
+
+  it('without an option, what comes before finish is cleared is not kept', () => {
+    const link = createHandshake()
+    const nc = createNcReceiver(link)
+    nc.put(Buffer.from('A'))
+    link.finish = 1
+    nc.put(Buffer.from('B'))
+    nc.look()
+    assert.deepStrictEqual([link.length, nc.lost], [0, 1])
+    link.finish = 0
+    nc.put(Buffer.from('C'))
+    assert.deepStrictEqual([link.length, nc.lost], [1, 1])
+  })
+
+  it('a full buffer is shown whole, though the NUL comes a byte too far; one that begins with a NUL shows nothing', () => {
+    const full = setUp()
+    full.nc.put(Buffer.alloc(256, 0x78))
+    assert.strictEqual(full.plc.scan()?.shown, 'x'.repeat(256))
+    const empty = setUp()
+    empty.nc.put(Buffer.from('\0\n'))
+    assert.strictEqual(empty.plc.scan()?.shown, '')
+    const zeros = setUp()
+    zeros.nc.put(Buffer.alloc(256))
+    zeros.plc.scan()
+    assert.strictEqual(zeros.plc.overwritten, 0)
   })
 
   it('two lines that are there at one scan are one message; a line and a half none yet', () => {

@@ -77,6 +77,11 @@ describe('INCON lines received', () => {
     )
     assert.strictEqual(new Set(keys).size, 5)
     assert.strictEqual(inconFraming({ most: 256 }).key, inconFraming().key)
+    assert.strictEqual(inconFraming().key, 'INCON lines of 256 bytes, torn after 200 ms, ASCII')
+    assert.strictEqual(
+      inconFraming({ most: 9, silence: 5, ascii: false, checked: true }).key,
+      'INCON lines of 9 bytes, torn after 5 ms, checked'
+    )
     assert.strictEqual(inconFraming({ silence: 300 }).create().silence, 300)
   })
 
@@ -115,11 +120,41 @@ describe('INCON lines sent', () => {
     refused('FRAME_TOO_LONG', 'x'.repeat(254))
     assert.strictEqual(encodeLine('x'.repeat(246), { checked: true }).length, 255)
     refused('FRAME_TOO_LONG', 'x'.repeat(247), { checked: true })
+    for (const value of ['\n'.repeat(256), Buffer.alloc(256)]) {
+      assert.throws(() => encodeLine(value), {
+        code: 'FRAME_TOO_LONG',
+        details: { what: 'the line', got: 256, most: 253 }
+      })
+    }
+  })
+
+  it('a refusal names the byte, or what is wrong with the text', () => {
+    const says = (value, reason, options) =>
+      assert.throws(
+        () => encodeLine(value, options),
+        error => error.code === 'BAD_VALUE' && error.details.reason === reason
+      )
+    says('A\tB', '09h is no printable ASCII; send it as bytes')
+    says('A\x7f', '7Fh is no printable ASCII; send it as bytes')
+    says('A\x1f', '1Fh is no printable ASCII; send it as bytes')
+    says('Größe', 'a letter beyond ASCII is no printable ASCII; send it as bytes')
+    says(Buffer.from('A\nB'), '0Ah (line feed) cannot be inside a line')
+    says(Buffer.from('A\0B'), '00h (NUL) cannot be inside a line')
+    says('A\ud800', 'it has half a character')
+    says('\udc00A', 'it has half a character', { encoding: 'utf8' })
+    // U+0141 would go out as 41h, an A
+    says('\u0141', 'it has letters that latin1 does not have', { encoding: 'latin1' })
+    says('', 'an empty line is no message')
+    says(true, 'it must be text, a number or bytes')
   })
 
   it('what cannot be a line is refused', () => {
-    for (const value of ['', '\n', '\r\n', Buffer.alloc(0), null, undefined, true, {}, [], NaN])
+    for (const value of ['', '\n', '\r\n', Buffer.alloc(0), null, undefined, true, {}, [], NaN, 12n])
       refused('BAD_VALUE', value)
+    assert.throws(
+      () => encodeLine(''),
+      error => error.details.item === 'the line' && error.details.value === ''
+    )
     for (const value of ['A\nB', 'A\0', 'A\rB', 'A\tB', 'Größe', '프로그램', 'A\x7f']) refused('BAD_VALUE', value)
     refused('BAD_VALUE', Buffer.from('A\nB'))
     refused('BAD_VALUE', Buffer.from('A\0B'))
@@ -129,6 +164,10 @@ describe('INCON lines sent', () => {
   it('other encodings where they are set', () => {
     assert.strictEqual(sent('Größe', { encoding: 'latin1' }), 'Gr\xf6\xdfe\r\n')
     assert.strictEqual(encodeLine('가', { encoding: 'utf8' }).toString('hex'), 'eab0800d0a')
+    for (const end of ['\n', '\r\n']) assert.strictEqual(sent(`ß${end}`, { encoding: 'latin1' }), '\xdf\r\n')
+    assert.strictEqual(sent('A\x7e'), 'A~\r\n')
+    refused('BAD_VALUE', 'A\nB\n', { encoding: 'latin1' })
+    refused('BAD_VALUE', 'A\x7f', { encoding: 'latin1' })
   })
 })
 
@@ -178,6 +217,60 @@ describe('INCON checked lines', () => {
       'B (noCheck)',
       'A'
     ])
+  })
+
+  it('check digits are capitals when sent; small ones are understood', () => {
+    for (let code = 0x41; code <= 0x5a; code++) {
+      const body = `#01 ${String.fromCharCode(code)}~`
+      assert.strictEqual(`${seal(Buffer.from(body.slice(4)), 1)}`, sealed(body))
+      assert.deepStrictEqual(unseal(Buffer.from(sealed(body).replace(/.{2}$/, hex => hex.toLowerCase()))), {
+        text: Buffer.from(body.slice(4)),
+        number: 1
+      })
+    }
+    assert.strictEqual(`${seal(Buffer.from('AB'), 0)}`, '#00 AB*00')
+    assert.strictEqual(`${seal(Buffer.from('l'), 1)}`, '#01 l*6E')
+    assert.deepStrictEqual(unseal(Buffer.from('#01 l*6e')), { text: Buffer.from('l'), number: 1 })
+    // a check below 10h has its zero
+    assert.strictEqual(`${seal(Buffer.from('\x03'), 1)}`, '#01 \x03*01')
+    assert.deepStrictEqual(unseal(Buffer.from('#01 \x03*01')), { text: Buffer.of(3), number: 1 })
+  })
+
+  it('a number without text is an empty one; two digits are needed, and nothing else', () => {
+    assert.deepStrictEqual(unseal(Buffer.from(sealed('#07 '))), { text: Buffer.alloc(0), number: 7 })
+    assert.deepStrictEqual(unseal(Buffer.from('*00')), { text: Buffer.alloc(0), number: null })
+    for (const body of ['#x7 A', '#7x A', '#07', '#-1 A', '# 7 A'])
+      assert.deepStrictEqual(unseal(Buffer.from(sealed(body))), { text: Buffer.from(body), number: null }, body)
+    for (const line of ['A+41', 'A*g1', 'A*1g', '41'])
+      assert.deepStrictEqual(unseal(Buffer.from(line)), { reason: 'noCheck' }, line)
+  })
+
+  // 23^30^30^20^41 = 42h
+  it('what is told of a line', () => {
+    const splitter = createLineSplitter({ checked: true })
+    const got = splitter.push(
+      Buffer.from(['#00 A*42', '#03 B*42', '#03 B*42', 'C*43', 'D*45', '#04 E*42'].join('\r\n') + '\r\n')
+    )
+    const bytes = value => Buffer.from(value)
+    assert.deepStrictEqual(got, [
+      { kind: 'data', bytes: bytes('A'), complete: true, number: 0, lost: 0 },
+      { kind: 'data', bytes: bytes('B'), complete: true, number: 3, lost: 2 },
+      { kind: 'data', bytes: bytes('B'), complete: true, number: 3, lost: 0, repeated: true },
+      { kind: 'data', bytes: bytes('C'), complete: true, number: null, lost: 0 },
+      { kind: 'damaged', bytes: bytes('D*45'), complete: false, reason: 'check' },
+      { kind: 'data', bytes: bytes('E'), complete: true, number: 4, lost: 0 }
+    ])
+    assert.deepStrictEqual(splitter.push(bytes('#05')), [])
+    assert.deepStrictEqual(splitter.flush(), [
+      { kind: 'damaged', bytes: bytes('#05'), complete: false, reason: 'silence' }
+    ])
+    const plain = createLineSplitter()
+    assert.deepStrictEqual(plain.push(bytes('A\nB\0\n')), [
+      { kind: 'data', bytes: bytes('A'), complete: true },
+      { kind: 'damaged', bytes: bytes('B\0'), complete: false, reason: 'unprintable' }
+    ])
+    plain.push(bytes('C'))
+    assert.deepStrictEqual(plain.flush(), [{ kind: 'data', bytes: bytes('C'), complete: false, reason: 'silence' }])
   })
 
   it('any one damaged bit, any one lost byte, is seen or harmless', () => {

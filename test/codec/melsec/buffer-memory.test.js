@@ -35,6 +35,12 @@ describe('MELSEC buffer memory', () => {
     assert.deepEqual(fromBufferMemory([4, 0x4241, 0x0a0d], { end, storeEnd: true, unit: 'byte' }), Buffer.from('AB'))
   })
 
+  it('an end code that is not stored there is not taken away', () => {
+    assert.deepEqual(fromBufferMemory([1, 0x4241], { end, storeEnd: true }), Buffer.from('AB'))
+    assert.deepEqual(fromBufferMemory([1, 0x0041], { end, storeEnd: true, unit: 'byte' }), Buffer.from('A'))
+    assert.deepEqual(fromBufferMemory([1, 0x4241], { storeEnd: true }), Buffer.from('AB'))
+  })
+
   it('takes the rest of the area, and nothing that is no image', () => {
     assert.deepEqual(fromBufferMemory([1, 0x4241, 7, 7]), Buffer.from('AB'))
     for (const image of [[], [2, 1], [1, 70000], [1, -1], [1, 1.5], 'AB', null]) {

@@ -68,6 +68,25 @@ describe('MELSEC values', () => {
     }
   })
 
+  it('what is too long is not even copied', () => {
+    const long = (value, format, most) => () => valueToBytes(value, { format, encoding: 'latin1', most })
+    const cases = [
+      ['ABC', 'text', 3],
+      [bytes('01 02 03'), 'words', 3],
+      [[1, 2, 3], 'bytes', 3],
+      [[1, 2, 3], 'words', 6],
+      [new Uint16Array(3), 'words', 6]
+    ]
+    for (const [value, format, got] of cases) {
+      assert.equal(long(value, format, got)().length, got)
+      assert.throws(long(value, format, got - 1), {
+        code: 'FRAME_TOO_LONG',
+        details: { what: 'the message', got, most: got - 1 }
+      })
+    }
+    assert.throws(long(new Array(1e9), 'words', 100), code('FRAME_TOO_LONG'))
+  })
+
   it('bytes that are no characters are told', () => {
     assert.deepEqual(decodeText(bytes('41 C1'), 'ascii'), { text: 'A\ufffd', valid: false })
     assert.equal(decodeText(bytes('ED 95'), 'utf8').valid, false)

@@ -81,6 +81,11 @@ describe('MELSEC messages, received', () => {
     ])
   })
 
+  it('after a message of 100,000 bytes the next one is whole', () => {
+    const long = 'x'.repeat(100000)
+    assert.deepEqual(cut(`${long}\r\nNEXT\r\n`, { most: 100000 }), [long, 'NEXT'])
+  })
+
   it('transparent codes: what stands behind the additional code is data', () => {
     const options = { end: bytes('0A'), transparent: bytes('10') }
     assert.deepEqual(cut('A\x10\nB\x10\x10C\x10\x11\n', options), ['A\nB\x10C\x11'])

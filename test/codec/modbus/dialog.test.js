@@ -138,6 +138,19 @@ describe('MODBUS conversation: the bytes may be made by another', () => {
     assert.equal(read([R, R], { exchange: made(null, odd[0]), attempts: 2 }).steps.length, 2)
   })
 
+  it('its own refusal stays, and whatever else it throws has a text', () => {
+    const throws = thrown => () => {
+      throw thrown
+    }
+    const refusal = new PlcError('BAD_VALUE', { item: 'x', value: 1, reason: 'y' })
+    assert.equal(read([R], { exchange: made(null, throws(refusal)) }).error, refusal)
+    for (const thrown of ['Unexpected data', new Error('Unexpected data')]) {
+      const { error } = read([R], { attempts: 1, exchange: made(null, throws(thrown)) })
+      assert.deepEqual([error.details.reason, error.cause], ['Unexpected data', thrown])
+    }
+    assert.equal(read([R], { attempts: 1, exchange: made(null, throws(null)) }).error.details.reason, 'null')
+  })
+
   it('an exception never reaches it', () => {
     const exchange = made(null, () => assert.fail('it was asked'))
     assert.equal(read([exception(2)], { exchange }).error.code, 'MODBUS_ILLEGAL_ADDRESS')
@@ -408,6 +421,27 @@ describe('MODBUS conversation: broadcast', () => {
       () => dialog.throw(new PlcError('LINE_DOWN', { sent: false })),
       error => error.code === 'WRITE_UNKNOWN' && /1 of 2 frames went out/.test(error.message)
     )
+  })
+})
+
+describe('MODBUS conversation: what a line must not do', () => {
+  const fault = new TypeError('boom')
+  const bits = { bits: { base: 107, mask: 1, value: 1 } }
+  const begun = dialog => {
+    dialog.next()
+    return dialog
+  }
+
+  it('bytes that are no ASCII frame are no answer', () => {
+    const dialog = begun(readDialog(WORDS, { station: STATION, protocol: 'ascii', attempts: 1 }))
+    assert.throws(() => dialog.next(Buffer.from(':1103\r\n')), { code: 'BAD_ANSWER' })
+  })
+
+  it('a fault of the program is passed on; of a write that went out it makes the outcome unknown', () => {
+    assert.throws(() => begun(readDialog(WORDS, { station: STATION })).throw(fault), fault)
+    const unknown = error => error.code === 'WRITE_UNKNOWN' && error.details.reason === 'boom' && error.cause === fault
+    assert.throws(() => begun(writeDialog({ frames: [WRITE] }, { station: STATION })).throw(fault), unknown)
+    assert.throws(() => begun(writeDialog(bits, { station: STATION })).throw(fault), fault)
   })
 })
 

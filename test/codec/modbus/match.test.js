@@ -438,6 +438,14 @@ describe('MODBUS match: ASCII', () => {
   })
 })
 
+describe('MODBUS match: the beginning of another answer of the station', () => {
+  it('is waited for before its byte count has come', () => {
+    assert.deepEqual(match()(hex('11 01')), { need: 5 })
+    assert.deepEqual(match()(hex('11 01 02')), { need: 7, ours: false })
+    assert.deepEqual(match()(hex('12 01')), { skip: 2 })
+  })
+})
+
 describe('MODBUS match: bounded', () => {
   it('asks again only when it pays', () => {
     const most = { fn: 3, base: 0, count: 125 }

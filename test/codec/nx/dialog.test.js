@@ -229,6 +229,8 @@ describe('NX conversation: writes are never repeated', () => {
 
   it('says what was written', () => {
     assert.match(write([LOST]).error.message, /word 0140h/)
+    const bits = { ask: 'writeBits', base: 0x1bfc, values: [true, false, true] }
+    assert.equal(write([LOST], {}, bits).error.details.item, 'bit 1BFCh and 2 more')
     assert.match(write([LOST], { item: 'setpoint' }).error.message, /setpoint/)
     const mixed = {
       ask: 'writeMixed',
@@ -321,6 +323,26 @@ describe('NX conversation: stations and settings', () => {
     const same = { station: 5, ids: masterIds({ ids: [5] }) }
     assert.equal(code(readDialog, WORDS, same), 'BAD_MASTER_ID')
     assert.equal(code(writeDialog, WRITE, same), 'BAD_MASTER_ID')
+  })
+
+  it('has its own IDs, from E2h on, and takes an allocator that knows no resting ones', () => {
+    const { value } = readDialog(WORDS, { station: 1 }).next()
+    assert.equal(show(value.send), '01 E2 23 03 C0 00 02 58 3C')
+    const ids = { take: () => 0xe5, ok() {}, failed() {} }
+    assert.equal(readDialog(WORDS, { station: 1, ids }).next().value.send[1], 0xe5)
+  })
+
+  it('a fault of the program is none of the PLC: a read passes it on, of a write it makes the outcome unknown', () => {
+    const fault = new TypeError('boom')
+    const reading = readDialog(WORDS, fresh())
+    reading.next()
+    assert.throws(() => reading.throw(fault), fault)
+    const writing = writeDialog(WRITE, fresh())
+    writing.next()
+    assert.throws(
+      () => writing.throw(fault),
+      ({ code, details, cause }) => code === 'WRITE_UNKNOWN' && details.reason === 'boom' && cause === fault
+    )
   })
 
   it('the facts are known also after a failure', () => {

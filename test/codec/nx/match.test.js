@@ -213,6 +213,20 @@ describe('NX match: what is taken besides', () => {
   })
 })
 
+describe('NX match: pieces of what is stepped over', () => {
+  it('our own echo and a late answer are waited for until their header is there', () => {
+    const sent = hex('01 E2 23 03 C0 00 02 58 3C')
+    for (const at of [1, 2, 3]) assert.deepEqual(match(WORDS, { sent })(sent.subarray(0, at)), { need: 7 }, `${at}`)
+    assert.deepEqual(match(WORDS, { sent })(sent.subarray(0, 4)), { need: 9, ours: false })
+    const late = frame([0xe3, 1, 0xa3], [1, 2])
+    for (const at of [1, 2, 3])
+      assert.deepEqual(match(WORDS, { late: [0xe3] })(late.subarray(0, at)), { need: 7 }, `${at}`)
+    assert.deepEqual(match(WORDS, { late: [0xe3] })(late.subarray(0, 4)), { need: 8, ours: false })
+    assert.deepEqual(match(WORDS, { late: [0xe3] })(hex('E3 02')), { skip: 2 })
+    assert.deepEqual(match(WORDS, { late: [0xe3] })(hex('E3 01 A4')), { skip: 3 })
+  })
+})
+
 describe('NX match: bounded', () => {
   it('asks again only when it pays, and works through a flood', () => {
     const got = receive(

@@ -150,6 +150,58 @@ describe('NX queries: the PLC side refuses', () => {
   })
 })
 
+describe('NX answers: what they say', () => {
+  const MIXED = { ask: 'readMixed', addresses: [{ kind: 'word', address: 0x1bf }] }
+  const MIXED_WRITE = { ask: 'writeMixed', writes: [{ kind: 'bit', address: 0x1bfc, value: true }] }
+  const read = (query, fn, info) => () => readAnswer({ to: 0xe2, from: 1, fn, info: Buffer.from(info) }, query)
+
+  it('an error names the kind and the first address of the query', () => {
+    const cases = [
+      [{ ask: 'readBits', base: 0x1bfc, count: 9 }, 'bit address 1BFCh'],
+      [{ ask: 'writeBits', base: 0x1bfc, values: [true] }, 'bit address 1BFCh'],
+      [{ ask: 'readWords', base: 0x1bf, count: 9 }, 'word address 01BFh'],
+      [{ ask: 'writeWords', base: 0x1bf, values: [1] }, 'word address 01BFh'],
+      [MIXED, 'first address 01BFh'],
+      [MIXED_WRITE, 'first address 1BFCh']
+    ]
+    for (const [query, address] of cases) {
+      const details = { station: 1, address, ask: query.ask }
+      assert.throws(read(query, 0xa0, [2]), { code: 'PLC_OUT_OF_RANGE', details })
+    }
+  })
+
+  it('what is no answer to the query is none', () => {
+    const words = { ask: 'readWords', base: 0, count: 2 }
+    const wrong = [
+      [0xa4, [1, 2, 3, 4]],
+      [0xa3, [1, 2, 3]],
+      [0xa3, [1, 2, 3, 4, 5]],
+      [0x83, [6]]
+    ]
+    for (const [fn, info] of wrong) assert.throws(read(words, fn, info), { code: 'BAD_ANSWER' })
+    assert.throws(read(words, 0x0a, [1, 2, 3]), error => /function 0A with 3 bytes/.test(error.message))
+    assert.throws(read(words, 0x00, [0]), { code: 'PLC_NO_SERVICE', details: { station: 1 } })
+  })
+
+  it('the PLC side: as many values as were asked for, and no more than a frame holds', () => {
+    const words = count => ({ ask: 'readWords', base: 0, count })
+    const made = (query, values) => encodeAnswer(query, values, ends)
+    for (const values of [[1], [1, 2, 3], true]) {
+      const details = { count: values === true ? 0 : values.length, unit: 'values', least: 2, most: 2 }
+      assert.throws(
+        () => made(words(2), values),
+        error =>
+          error.code === 'BAD_COUNT' && Object.entries(details).every(([name, value]) => error.details[name] === value)
+      )
+    }
+    assert.equal(made(words(128), new Array(128).fill(7)).length, 262)
+    assert.throws(() => made(words(129), new Array(129).fill(7)), {
+      code: 'FRAME_TOO_LONG',
+      details: { what: 'the answer', got: 258, most: 256 }
+    })
+  })
+})
+
 describe('NX queries: limits', () => {
   const send = (query, settings) =>
     codeOf(() => encodeQuery(query, { ...ends, limits: settings && limitsOf(settings) }))
@@ -197,6 +249,7 @@ describe('NX queries: limits', () => {
     assert.equal(send(places(10, 'bit'), { info: 18 }), 'FRAME_TOO_LONG', 'the query is longer than its answer')
     assert.equal(send({ ask: 'readWords', base: 0, count: 33 }, { readWords: 32 }), 'BAD_COUNT')
     assert.equal(send({ ask: 'readWords', base: 0, count: 32 }, { readWords: '32' }), 'sent')
+    assert.deepEqual(limitsOf({ readWords: undefined }), limitsOf())
     for (const settings of [
       { writeWords: 128 },
       { readWords: 0 },

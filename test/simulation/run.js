@@ -5,13 +5,18 @@
  * Whatever the faults are, it checks only: no wrong value is accepted, every request settles exactly once, no write is
  * doubled, and what an outcome says is what the station did.
  *
+ * With `polls` groups are polled beside it, and `phases` times the faults stop and begin again (liveness): then every station and every group must
+ * be well within the bound that the settings promise.
+ *
  * Wrong: a value delivered as good that the station did not hold there at any moment between request and answer. All values
  * that are read change all the time, each address by its own sequence, so a stale or foreign one shows.
  */
 
 const { createPool } = require('../../lib/line')
 const { createLine, createRandom, createVirtualClock } = require('../../lib/sim')
-const { NX, checkWrites, createDevice, read, simulated, step, write } = require('./workload')
+const { drawGroups, startPolls } = require('./polls')
+const { recover, resume } = require('./recover')
+const { NX, checkWrites, createDevice, simulated, step } = require('./workload')
 
 /** 30 % of all answers: each kind of fault that the claim of zero wrong values covers. */
 const FAULTS = [
@@ -41,45 +46,25 @@ const FAULTS = [
  * @param {number} [options.unplugs] rate of unplugging and of redeploying per request
  * @param {boolean} [options.uniform] only one word at a time is read, from one station: answers differ in nothing but the value
  * @param {boolean} [options.recovery] whether the faults end at last, and all stations must come back
+ * @param {boolean} [options.polls] whether groups are polled, too
+ * @param {number} [options.phases] how often the faults stop and all must come back; the exchanges are shared among them
+ * @param {number} [options.pause] ms that a user waits at most between two requests
  * @param {Record<string, any>} [options.device] further settings of the devices
  * @param {Record<string, any>} [options.wire] further settings of the line
  * @returns {Promise<Report>}
  */
 async function safetyRun(options) {
-  const { seed, exchanges = 5000, stations: rows = NX, faults = FAULTS, collisions = true, echo = false } = options
-  const { unplugs = 0.001, uniform = false, recovery = true, device, wire } = options
-  const random = createRandom(seed)
-  const clock = createVirtualClock()
-  const writes = new Map()
-  const line = createLine({
-    clock,
-    echo,
-    collisions,
-    seed: random.integer(0, 2 ** 32 - 1),
-    baudRate: 38400,
-    rates: faults,
-    chunk: () => random.pick([1, 3, 16, 64]),
-    stations: rows.map(row => simulated(row, writes))
-  })
-  const report = emptyReport(seed)
-  const system = {
-    rows,
-    clock,
-    line,
-    random,
-    writes,
-    report,
-    unplugs,
-    device,
-    wire,
-    uniform,
-    serial: 0,
-    pool: createPool({ clock, random: random.next })
+  const { seed, exchanges = 5000, recovery = true, phases = 1 } = options
+  const { system, open } = createSystem(options)
+  const { clock, line, report } = system
+  let count = {}
+  for (let phase = 1; phase <= phases; phase++) {
+    const until = Math.ceil((exchanges * phase) / phases)
+    await clock.run(drive(system, { open, until }), { name: `safety run ${seed}` })
+    count = { ...line.faults.counts }
+    if (recovery) await clock.run(recover(system), { name: 'recovery' })
+    if (phase < phases) resume(system)
   }
-  const open = () => openSystem(system)
-  await clock.run(drive(system, { open, exchanges }), { name: `safety run ${seed}` })
-  const count = { ...line.faults.counts }
-  if (recovery) await clock.run(recover(system), { name: 'recovery' })
   await clock.run(system.close(), { name: 'closing' })
   await clock.drain()
   checkWrites(system)
@@ -90,6 +75,32 @@ async function safetyRun(options) {
     virtualMs: Math.round(clock.now()),
     faults: count
   })
+}
+
+function createSystem(options) {
+  const { seed, stations: rows = NX, faults = FAULTS, collisions = true, echo = false, baudRate = 38400 } = options
+  const { unplugs = 0.001, uniform = false, polls = false, pause = 20, device, wire } = options
+  const random = createRandom(seed)
+  const clock = createVirtualClock()
+  const writes = new Map()
+  const line = createLine({
+    clock,
+    echo,
+    collisions,
+    seed: random.integer(0, 2 ** 32 - 1),
+    baudRate,
+    rates: faults,
+    chunk: () => random.pick([1, 3, 16, 64]),
+    stations: rows.map(row => simulated(row, writes))
+  })
+  const pool = createPool({ clock, random: random.next })
+  const report = emptyReport(seed)
+  const system = { rows, clock, line, random, writes, report, faults, baudRate, unplugs, pause, device, wire, uniform }
+  Object.assign(system, { serial: 0, pool, groups: [] })
+  if (polls) system.groups = drawGroups(system)
+  const open = () => openSystem(system)
+  open()
+  return { system, open }
 }
 
 const heard = ({ stations }) => stations.reduce((sum, { counts }) => sum + counts.queries, 0)
@@ -110,25 +121,40 @@ const emptyReport = seed => ({
   doubled: [],
   misreported: [],
   executed: 0,
+  cycles: 0,
+  late: 0,
+  events: {},
   recovered: 0,
+  bound: Infinity,
+  overdue: [],
   relapses: 0
 })
 
-/** What users hold: one lease and one device per station; closing gives all back. */
+/** A demoted station is asked again soon: virtual time that passes without exchanges proves little. */
+const HEALTH = { probeFirst: 300, probeMost: 2400 }
+const TIMEOUT = 150
+
+/** What users hold: one lease, one device per station and its polls; closing gives all back. */
 function openSystem(system) {
-  const { pool, line, clock, random, rows } = system
+  const { pool, line, clock, random, rows, baudRate, report } = system
   const settings = {
     transport: 'simulated',
     path: 'safety',
     wire: line.wire,
-    baudRate: 38400,
+    baudRate,
     openGrace: 500,
     ...system.wire
   }
   const lease = pool.open(settings, { id: 'safety', name: 'safety run' })
-  const common = { lease, clock, random: random.next, timeout: 150, attempts: 2, access: 'write', ...system.device }
+  lease.on('event', ({ event }) => {
+    report.events[event] = (report.events[event] ?? 0) + 1
+    if (event === 'late') report.late++
+  })
+  const health = { ...HEALTH, timeout: TIMEOUT, attempts: 2, ...system.device }
+  const common = { lease, clock, random: random.next, access: 'write', ...health }
   const devices = rows.map(row => createDevice(row, common))
-  system.devices = devices
+  Object.assign(system, { lease, devices, common: health })
+  startPolls(system)
   system.close = async () => {
     devices.forEach(device => device.close())
     await lease.release()
@@ -136,11 +162,10 @@ function openSystem(system) {
 }
 
 /** Two users per station ask without a pause, until the stations have heard enough. */
-async function drive(system, { open, exchanges }) {
+async function drive(system, { open, until }) {
   const { line } = system
-  open()
   const user = async index => {
-    while (heard(line) < exchanges) {
+    while (heard(line) < until) {
       await step(system, index)
       await chaos(system, open)
     }
@@ -149,31 +174,9 @@ async function drive(system, { open, exchanges }) {
   await Promise.all(users.map(user))
 }
 
-const PATIENCE = 10000 // ms: the longest back-off, a dark station, the bound of lateness
-
-/** Liveness: the faults stop. Everything must come back by itself, and then nothing may be bad any more. */
-async function recover(system) {
-  const { clock, line, report, rows } = system
-  line.faults.clear()
-  line.wire.plug()
-  const start = clock.now()
-  const pause = () => new Promise(resolve => clock.setTimer(() => resolve(undefined), 50))
-  await Promise.all(
-    rows.map(async (_, index) => {
-      while (!(await read(system, index)) && clock.now() - start < PATIENCE) await pause()
-    })
-  )
-  report.recovered = clock.now() - start
-  for (let n = 0; n < 5 * rows.length; n++) {
-    const index = n % rows.length
-    if (!(await read(system, index))) report.relapses++
-    if ((await write(system, index)) !== 'confirmed') report.relapses++
-  }
-}
-
 /** An adapter is pulled, or a flow is deployed anew, in the middle of whatever the others do. */
 async function chaos(system, open) {
-  const { random, unplugs, line, clock, report } = system
+  const { random, unplugs, line, clock, report, pause } = system
   if (random.chance(unplugs)) {
     report.unplugged++
     line.wire.unplug()
@@ -186,8 +189,8 @@ async function chaos(system, open) {
     open()
     await closing
   }
-  // a line that is down refuses at once: let time pass
-  await new Promise(resolve => clock.setTimer(() => resolve(undefined), random.integer(0, 20)))
+  // a line that is down, or a station that is, refuses at once: let time pass
+  await new Promise(resolve => clock.setTimer(() => resolve(undefined), random.integer(0, pause)))
 }
 
 /**
@@ -205,7 +208,12 @@ async function chaos(system, open) {
  * @property {any[]} doubled writes that a station carried out more than once
  * @property {any[]} misreported writes whose outcome contradicts what the station did
  * @property {number} executed values that stations wrote, by their own count
- * @property {number} recovered ms until every station gave good values, after the faults had stopped
+ * @property {number} cycles of polled groups
+ * @property {number} late late answers that the line has told of
+ * @property {Record<string, number>} events of the line, by name
+ * @property {number} recovered ms until every station and group gave good values, after the faults had stopped: the longest of all phases
+ * @property {number} bound ms that this may take by the settings
+ * @property {any[]} overdue phases that took longer
  * @property {number} relapses reads and writes that failed after that
  * @property {number} open lines left open
  * @property {number} timers left
@@ -215,4 +223,4 @@ async function chaos(system, open) {
  * @property {number} unplugged
  */
 
-module.exports = { safetyRun, FAULTS, PATIENCE }
+module.exports = { safetyRun, createSystem, FAULTS }

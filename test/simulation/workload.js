@@ -43,6 +43,8 @@ const createDevice = (row, common) => USERS[row.device].createDevice(row, { ...c
 const step = (system, index) =>
   !system.uniform && system.random.chance(0.25) ? write(system, index) : read(system, index)
 
+const randomItem = ({ random, rows }, index) => USERS[rows[index].device].randomItem(random)
+
 /** @returns {Promise<boolean>} whether every value was good */
 async function read(system, index) {
   const { clock, random, report, devices, rows } = system
@@ -130,4 +132,17 @@ function checkWrites({ writes, report, line }) {
   report.executed = line.stations.reduce((sum, each) => [...each.writes.values()].reduce((a, b) => a + b, sum), 0)
 }
 
-module.exports = { NX, checkWrites, createDevice, isHeld, mixed, read, regulators, simulated, step, write }
+module.exports = {
+  NX,
+  checkWrites,
+  createDevice,
+  isHeld,
+  judge,
+  mixed,
+  randomItem,
+  read,
+  regulators,
+  simulated,
+  step,
+  write
+}

@@ -301,4 +301,11 @@ const REFUSAL = /^(PLC|MODBUS|C24)_/
  */
 const isRefusal = error => typeof error?.code === 'string' && REFUSAL.test(error.code)
 
-module.exports = { CODES, PlcError, isRefusal }
+/**
+ * What happened, without the advice: the text of an error is both.
+ * @param {PlcError} error
+ */
+const causeOf = ({ message, remedy }) =>
+  message.endsWith(`. ${remedy}`) ? message.slice(0, -remedy.length - 2) : message
+
+module.exports = { CODES, PlcError, causeOf, isRefusal }

@@ -2,11 +2,17 @@
 const { createDevice, deviceSettings } = require('./device-settings')
 const { onStarted } = require('./started')
 
+/** The events that somebody should act on; what comes and goes by itself is for `plc-monitor`. */
+const ADVICE = ['late', 'jammed', 'fixedMasterId', 'slow']
+
 /** What the line or the device advises, once for each kind: it stands in the log and in the debug sidebar. */
 const adviser = deviceNode => {
   const told = new Set()
   return ({ event, station, cause, remedy }) => {
-    if ((station !== null && station !== deviceNode.station) || told.has(event)) return
+    // the node whose message was written tells of that itself
+    if (event === 'audit') return
+    if (!ADVICE.includes(event) || told.has(event)) return
+    if (station !== null && station !== deviceNode.station) return
     told.add(event)
     deviceNode.warn([cause, remedy].filter(Boolean).join('. '))
   }

@@ -1,8 +1,10 @@
 'use strict'
 
 const { EventEmitter } = require('node:events')
+const { causeOf } = require('../error')
 const { Condition } = require('./condition')
 const { Connection } = require('./connection')
+const { Outage } = require('./outage')
 const { Recorder } = require('./recorder')
 const { Requests } = require('./requests')
 const { isLineFailure } = require('./run')
@@ -19,7 +21,7 @@ const LEAST_CALM = 20
 /**
  * One wire: joins who uses it (requests, or a stream of messages) and how it opens, and is what others see of it.
  * Synchronous: everything happens inside a timer, the arrival of bytes, or a call; promises only at the edge.
- * Events: `state` (state, reason) and `event` ({ event, station, … }).
+ * Events: `state` (state, reason), `event` ({ event, station, … }) and `frame` (row of the trace, whether it may grow).
  */
 class Line extends EventEmitter {
   #clock
@@ -31,23 +33,25 @@ class Line extends EventEmitter {
   #connection
   #recorder
   #condition
+  #outage
   #calm
   #grace = null
   #silent = 0
 
   /**
    * @param {{ name: string, settings: any, clock: any, make: () => any, random: () => number, claims: any,
-   *   memories: Map<any, any> }} options
+   *   memories: Map<any, any>, outage: { downAt: number | null } }} options outage: kept by the pool, see outage.js
    */
-  constructor({ name, settings, clock, make, random, claims, memories }) {
+  constructor({ name, settings, clock, make, random, claims, memories, outage }) {
     super()
     this.setMaxListeners(0)
     this.name = name
     this.#clock = clock
     this.#settings = settings
     this.#times = lineTimes(settings)
-    this.#recorder = new Recorder(clock)
-    this.#condition = new Condition({ line: name, changed: (state, reason) => this.emit('state', state, reason) })
+    this.#recorder = new Recorder(clock, (row, grows) => this.emit('frame', row, grows))
+    this.#condition = new Condition({ line: name, changed: (state, reason) => this.#changed(state, reason) })
+    this.#outage = new Outage({ clock, memory: outage, report: event => this.report(event) })
     this.#use = new Use(name)
     const parts = this.#parts(memories)
     this.#requests = new Requests(parts, { ...this.#host(), isOpen: () => this.#condition.state === 'open' })
@@ -62,6 +66,11 @@ class Line extends EventEmitter {
     this.#connection = new Connection({ name, clock, make, random, claims, told })
   }
 
+  #changed(state, reason) {
+    this.emit('state', state, reason)
+    this.#outage.became(state, reason)
+  }
+
   #parts(memories) {
     return {
       name: this.name,
@@ -71,7 +80,8 @@ class Line extends EventEmitter {
       recorder: this.#recorder,
       memories,
       write: (bytes, done) => this.#connection.write(bytes, done),
-      hint: (count, at) => this.#connection.hint(count, at)
+      hint: (count, at) => this.#connection.hint(count, at),
+      waiting: () => this.#connection.waiting
     }
   }
 
@@ -258,8 +268,7 @@ class Line extends EventEmitter {
   /** Nothing is sent into a flood; the first silence ends it. */
   #jam(error) {
     this.#fall(error, 'jammed')
-    const { message, remedy } = error
-    this.report({ event: 'jammed', station: null, cause: message, remedy })
+    this.report({ event: 'jammed', station: null, cause: causeOf(error), remedy: error.remedy })
     this.#calm.wait(Math.max(LEAST_CALM, this.#times.gap), () => {
       this.#become('open')
     })

@@ -4,10 +4,12 @@ const { PlcError } = require('../error')
 const { realClock } = require('./clock')
 const { Lease } = require('./lease')
 const { Line } = require('./line')
+const { Monitor } = require('./monitor')
 const { difference, lineName, lineSettings, wireKey } = require('./settings')
 const { serial } = require('./transports/serial')
 const { simulated } = require('./transports/memory')
 const { tcp } = require('./transports/tcp')
+const { Watchers } = require('./watch')
 
 const TRANSPORTS = Object.freeze({ serial, tcp, simulated })
 
@@ -18,7 +20,6 @@ const TRANSPORTS = Object.freeze({ serial, tcp, simulated })
  * @param {import('./clock').Clock} [options.clock]
  * @param {Record<string, (settings: any, clock: any) => any>} [options.transports] factories by name; replace the own ones
  * @param {() => number} [options.random] 0 to 1, for the jitter of reconnecting
- * @returns {{ open: (settings: any, owner: { id: string, name: string }) => Lease, lines: () => any[] }}
  */
 function createPool({ clock = realClock, transports = {}, random = Math.random } = {}) {
   const pool = {
@@ -28,7 +29,13 @@ function createPool({ clock = realClock, transports = {}, random = Math.random }
     entries: new Map(),
     closing: new Map(),
     claims: new Map(),
-    memories: new Map()
+    memories: new Map(),
+    outages: new Map(),
+    watchers: new Watchers(clock)
+  }
+  const watch = (settings, told) => {
+    const key = wireKey(settings)
+    return pool.watchers.add(key, pool.entries.get(key)?.line ?? null, told)
   }
   return {
     /**
@@ -37,6 +44,26 @@ function createPool({ clock = realClock, transports = {}, random = Math.random }
      * @throws {PlcError} BAD_SETTING, WIRE_CONFLICT
      */
     open: (raw, owner) => lease(pool, lineSettings(raw), owner),
+    /**
+     * Watches a wire, which need not have a line yet, without opening it or holding it open.
+     * @param {any} raw settings of a line; what leads to the wire counts
+     * @param {{ event?: (event: any, line: any) => void, state?: (state: string, reason: any, line: any) => void, frame?: (row: any) => void }} told
+     *   `state`: now, and at each change; `closed`, if nobody has it open. `frame`: rows as those of `line.trace()`, as they come
+     * @returns {() => void} ends it; any number of times
+     * @throws {PlcError} BAD_SETTING
+     */
+    watch: (raw, told) => watch(lineSettings(raw), told),
+    /**
+     * The same with statistics, see monitor.js.
+     * @param {any} raw settings of a line
+     * @param {import('./monitor').MonitorOptions} [options]
+     * @returns {Monitor} `{ statistics(), stop() }`
+     * @throws {PlcError} BAD_SETTING
+     */
+    monitor(raw, options) {
+      const settings = lineSettings(raw)
+      return new Monitor({ clock, name: lineName(settings), watch: told => watch(settings, told) }, options)
+    },
     /** The open lines, for tests and monitors: `{ key, line, leases }`. */
     lines: () => [...pool.entries.values()].map(({ key, line, leases }) => ({ key, line, leases: leases.size }))
   }
@@ -60,6 +87,7 @@ function newEntry(pool, { key, settings, owner }) {
   /** @type {any} */
   const entry = { key, settings, owner, leases: new Set(), line: null }
   if (!memories.has(key)) memories.set(key, new Map())
+  if (!pool.outages.has(key)) pool.outages.set(key, { downAt: null })
   const line = new Line({
     name: lineName(settings),
     settings,
@@ -67,10 +95,12 @@ function newEntry(pool, { key, settings, owner }) {
     random,
     make: () => pool.transports[settings.transport](settings, clock),
     claims: claimsOf(pool, entry),
-    memories: memories.get(key)
+    memories: memories.get(key),
+    outage: pool.outages.get(key)
   })
   entry.line = line
   pool.entries.set(key, entry)
+  pool.watchers.made(key, line)
   line.open()
   // the ports of the lines before may still be on their way to be closed
   const before = pool.closing.get(key)

@@ -9,13 +9,14 @@ const FAILURES = { TIMEOUT: 'timeouts', INCOMPLETE: 'incomplete', CRC_ERROR: 'cr
 /** What happened on a line, counted and kept: statistics and trace in one place, so that they agree. */
 class Recorder {
   stats = new Stats()
-  trace = new Trace()
+  trace
   #clock
   #sentAt = 0
 
-  /** @param {any} clock */
-  constructor(clock) {
+  /** @param {any} clock @param {(row: any, grows: boolean) => void} [frame] told of each row of the trace */
+  constructor(clock, frame) {
     this.#clock = clock
+    this.trace = new Trace({ tell: frame })
   }
 
   #row(dir, { station, bytes, note }) {

@@ -9,23 +9,33 @@ class Trace {
   #rows = []
   #at = 0
   #limit
+  #tell
 
-  constructor(limit = 200) {
+  /** @param {{ limit?: number, tell?: (row: any, grows: boolean) => void }} [options] tell: each new row; grows: its bytes may become more */
+  constructor({ limit = 200, tell = () => {} } = {}) {
     this.#limit = limit
+    this.#tell = tell
   }
 
   /** @param {{ t: number, dir: 'out'|'in', station: any, bytes: Buffer, note: string }} row t: epoch ms */
   add({ t, dir, station, bytes, note }) {
+    this.#put({ t, dir, station, bytes, note }, false)
+  }
+
+  #put({ t, dir, station, bytes, note }, grows) {
     const row = { t, dir, station, bytes: Buffer.from(bytes.subarray(0, MOST_BYTES)), note }
     if (this.#rows.length < this.#limit) this.#rows.push(row)
     else this.#rows[this.#at] = row
     this.#at = (this.#at + 1) % this.#limit
+    this.#tell(row, grows)
   }
 
   /** Bytes that belong to nothing: joined to the row before if that is the same burst. */
   addStray({ t, bytes, note }) {
     const last = this.#rows[(this.#at + this.#limit - 1) % this.#limit]
-    if (!last || last.note !== note || t - last.t > BURST) return this.add({ t, dir: 'in', station: null, bytes, note })
+    if (!last || last.note !== note || t - last.t > BURST) {
+      return this.#put({ t, dir: 'in', station: null, bytes, note }, true)
+    }
     last.t = t
     if (last.bytes.length < MOST_BYTES) last.bytes = Buffer.concat([last.bytes, bytes]).subarray(0, MOST_BYTES)
   }

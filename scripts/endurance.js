@@ -8,9 +8,14 @@
  *   npm run endurance -- c24messages [10000] so many messages each way on a line that damages bytes; what was lost, doubled, wrong
  *   npm run endurance -- c24random [1000000] so many random inputs for everything that reads bytes of a C24 port
  *   npm run endurance -- inconrandom [1000000] the same for lines of an INCON controller
+ *   npm run endurance -- coverage [lib/codec] which branches no test takes, and why; a folder below its limit is a failure
+ *   npm run endurance -- mutation [lib/codec] changes the code at each place; fewer than 85 % of them noticed by the tests is a failure.
+ *                                             A folder or a pattern of files below lib/codec or lib/line; Stryker is installed for it
+ * and those with faults on real ports: endurance-faults.js
  */
 
 const path = require('node:path')
+const { FAULT_RUNS } = require('./endurance-faults.js')
 
 const support = path.join(__dirname, '..', 'test', 'support')
 const print = text => process.stdout.write(`${text}\n`)
@@ -22,6 +27,8 @@ const whole = (text, what) => {
 }
 
 const RUNS = {
+  ...FAULT_RUNS,
+
   /** @param {string} [count] */
   async redeploys(count = '1000') {
     const rounds = whole(count, 'redeploys')
@@ -89,6 +96,21 @@ const RUNS = {
     const { inconRandom } = require(path.join(support, 'incon-random.js'))
     print(JSON.stringify(inconRandom({ inputs: whole(inputs, 'inputs') })))
     print(`no exception, heap ${Math.round(process.memoryUsage().heapUsed / 1e6)} MB`)
+  },
+
+  /** @param {string} [folder] */
+  async coverage(folder) {
+    const { failures } = await require(path.join(support, 'coverage.js')).coverage({ only: folder, tell: print })
+    if (failures.length > 0) throw new Error(failures.join('\n'))
+  },
+
+  /** @param {string} [files] */
+  async mutation(files) {
+    const { failures } = await require(path.join(__dirname, '..', 'test', 'mutation', 'run.js')).mutation({
+      files,
+      tell: print
+    })
+    if (failures.length > 0) throw new Error(failures.join('\n'))
   }
 }
 

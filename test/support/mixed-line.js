@@ -128,7 +128,9 @@ async function mixedLine({ seconds = 60, baudRate = 19200, seed = 1 } = {}) {
   try {
     // the first answer of each: from here on the rate counts
     await Promise.all(devices.map((device, n) => device.read([STATIONS[n].setPoint])))
-    const near = devices.map((device, n) => createNearEnd(STATIONS[n], device, { held: (...value) => far.held.isHeld(n, ...value), wrong }))
+    const near = devices.map((device, n) =>
+      createNearEnd(STATIONS[n], device, { held: (...value) => far.held.isHeld(n, ...value), wrong })
+    )
     const { busy } = devices[0].line.stats()
     const from = performance.now()
     let turn = 0

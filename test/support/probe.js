@@ -23,7 +23,8 @@ function count() {
   const resources = {}
   for (const type of process.getActiveResourcesInfo()) resources[type] = (resources[type] || 0) + 1
   const listeners = process.eventNames().reduce((sum, name) => sum + process.listenerCount(name), 0)
-  return { resources, descriptors: descriptors().filter(Boolean), listeners, heap: process.memoryUsage().heapUsed }
+  const { heapUsed: heap, external, rss } = process.memoryUsage()
+  return { resources, descriptors: descriptors().filter(Boolean), listeners, heap, external, rss }
 }
 
 process.on('message', message => {

@@ -47,7 +47,9 @@ function startVersions(rows, { every, most }) {
     /** Whether a station can have held these words at some moment between two times. */
     isHeld(n, words, from, to) {
       const [version_] = words
-      return histories[n].between(from, to).includes(version_) && String(words) === String(wordsOf(rows[n].number, version_))
+      return (
+        histories[n].between(from, to).includes(version_) && String(words) === String(wordsOf(rows[n].number, version_))
+      )
     },
     stop: () => clearInterval(timer)
   }

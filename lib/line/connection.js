@@ -4,6 +4,9 @@ const { PlcError } = require('../error')
 
 const FIRST_DELAY = 250
 const MOST_DELAY = 5000
+/** To look for a name costs nothing, and it is there a moment before its rights: an adapter that was plugged in is found within this, ms. */
+const MOST_LOOKING = 1000
+const LOOKING = new Set(['PORT_NOT_FOUND', 'PORT_DENIED'])
 /** A connection that lived this long (ms) was a good one: the next attempt comes soon. */
 const STABLE = 5000
 /** A transport that does not say that it has closed is given up after this, ms. */
@@ -100,9 +103,10 @@ class Connection {
 
   #failed(error, wasOpen = false) {
     if (this.#wanted) {
+      const most = LOOKING.has(error?.code) ? MOST_LOOKING : MOST_DELAY
       const delay = this.#delay * (0.75 + 0.5 * this.#random())
-      this.#delay = Math.min(MOST_DELAY, this.#delay * 2)
-      this.#timer = this.#clock.setTimer(() => this.#attempt(), Math.min(delay, MOST_DELAY))
+      this.#delay = Math.min(most, this.#delay * 2)
+      this.#timer = this.#clock.setTimer(() => this.#attempt(), Math.min(delay, most))
     }
     this.#told.down(error, wasOpen)
   }

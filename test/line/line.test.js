@@ -135,28 +135,57 @@ describe('line: opening, losing, coming back', () => {
     assert.deepEqual(states, [['waiting', 'PORT_NOT_FOUND']])
   })
 
-  it('tries again after 0.25, 0.5, 1, 2, 4, 5, 5 s, with a fresh transport each time', async () => {
-    const times = []
-    const made = []
-    const absent = (_, clock) => {
-      const transport = {
-        open: handlers => {
-          times.push(clock.now())
-          made.push(transport)
-          handlers.failed(notFound)
-        },
-        hint: () => {},
-        close: done => done(),
-        id: () => 'x'
+  for (const [what, error, wanted] of [
+    ['a busy port', new PlcError('PORT_BUSY', { path: 'x' }), [0, 250, 750, 1750, 3750, 7750, 12750, 17750]],
+    // to look whether a name is there costs nothing, and an adapter that was plugged in must not wait: each second
+    ['an absent port', notFound, [0, 250, 750, 1750, 2750, 3750, 4750, 5750]],
+    // the name is there a moment before its rights are
+    ['a forbidden port', new PlcError('PORT_DENIED', { path: 'x' }), [0, 250, 750, 1750, 2750, 3750, 4750, 5750]]
+  ]) {
+    it(`tries ${what} again after a longer and longer time, with a fresh transport each time`, async () => {
+      const times = []
+      const made = []
+      const absent = (_, clock) => {
+        const transport = {
+          open: handlers => {
+            times.push(clock.now())
+            made.push(transport)
+            handlers.failed(error)
+          },
+          hint: () => {},
+          close: done => done(),
+          id: () => 'x'
+        }
+        return transport
       }
-      return transport
-    }
-    const { clock, lease, run } = createBench({ transports: { simulated: absent } })
-    await clock.advance(18000)
-    assert.deepEqual(times, [0, 250, 750, 1750, 3750, 7750, 12750, 17750])
-    assert.equal(new Set(made).size, 8)
+      const { clock, lease, run } = createBench({ transports: { simulated: absent } })
+      await clock.advance(wanted.at(-1) + 100)
+      assert.deepEqual(times, wanted)
+      assert.equal(new Set(made).size, 8)
+      await run(lease.release())
+      assert.equal(clock.pending(), 0)
+    })
+  }
+
+  it('an adapter that is plugged in after an hour is open within a second, also if its rights come late and another program looks at it first', async () => {
+    const faults = [notFound]
+    const port = (_, clock) => ({
+      open: handlers => clock.setTimer(() => (faults[0] ? handlers.failed(faults[0]) : handlers.opened()), 1),
+      hint: () => {},
+      close: done => done(),
+      id: () => 'x'
+    })
+    const { clock, lease, run } = createBench({ transports: { simulated: port }, random: () => 1 })
+    await clock.advance(3600000)
+    faults[0] = new PlcError('PORT_DENIED', { path: 'x' })
+    await clock.advance(1010)
+    faults[0] = new PlcError('PORT_BUSY', { path: 'x' })
+    await clock.advance(1010)
+    faults.length = 0
+    // doubled once for the other program
+    await clock.advance(1510)
+    assert.equal(lease.line.state, 'open')
     await run(lease.release())
-    assert.equal(clock.pending(), 0)
   })
 
   it('begins with the short delay again after an answer', async () => {

@@ -16,20 +16,21 @@ const REPORTS = path.join('.cache', 'mutation')
 
 /** What is changed, and the tests that have to notice it. Others notice much of it, too, but these are to do it alone, and soon. */
 const PARTS = Object.freeze({
-  codec: { mutate: 'lib/codec/*.js', spec: ['test/codec/*.test.js'] },
-  nx: { mutate: 'lib/codec/nx/**/*.js', spec: ['test/codec/nx/**/*.test.js'] },
-  modbus: { mutate: 'lib/codec/modbus/**/*.js', spec: ['test/codec/modbus/**/*.test.js'] },
-  melsec: { mutate: 'lib/codec/melsec/**/*.js', spec: ['test/codec/melsec/**/*.test.js'] },
-  incon: { mutate: 'lib/codec/incon/**/*.js', spec: ['test/codec/incon/**/*.test.js'] },
-  line: { mutate: 'lib/line/**/*.js', spec: ['test/line/**/*.test.js'] }
+  'lib/codec': { mutate: 'lib/codec/*.js', spec: ['test/codec/*.test.js'] },
+  'lib/codec/nx': { mutate: 'lib/codec/nx/**/*.js', spec: ['test/codec/nx/**/*.test.js'] },
+  'lib/codec/modbus': { mutate: 'lib/codec/modbus/**/*.js', spec: ['test/codec/modbus/**/*.test.js'] },
+  'lib/codec/melsec': { mutate: 'lib/codec/melsec/**/*.js', spec: ['test/codec/melsec/**/*.test.js'] },
+  'lib/codec/incon': { mutate: 'lib/codec/incon/**/*.js', spec: ['test/codec/incon/**/*.test.js'] },
+  'lib/line': { mutate: 'lib/line/**/*.js', spec: ['test/line/**/*.test.js'] }
 })
+const LEAST = 85 // percent
 
-/** @param {{ part: string, mutate: string[], spec: string[], jobs: number }} what */
-const options = ({ part, mutate, spec, jobs }) => ({
+/** @param {{ name: string, mutate: string, spec: string[], jobs: number }} what */
+const options = ({ name, mutate, spec, jobs }) => ({
   plugins: [path.join(PACKAGES, 'mocha-runner', 'dist', 'src', 'index.js')],
   testRunner: 'mocha',
   mochaOptions: { config: '.mocharc.json', spec },
-  mutate,
+  mutate: [mutate],
   coverageAnalysis: 'perTest',
   concurrency: jobs,
   // a mutant that turns a loop into an endless one is ended after 1.5 times the usual time and this
@@ -45,14 +46,14 @@ const options = ({ part, mutate, spec, jobs }) => ({
     'test/system',
     'test/mutation'
   ],
-  tempDirName: path.join(REPORTS, `sandbox-${part}`),
+  tempDirName: path.join(REPORTS, `${name}-sandbox`),
   cleanTempDir: 'always',
   allowEmpty: false,
   allowConsoleColors: false,
   checkers: [],
   reporters: ['clear-text', 'json'],
   clearTextReporter: { allowColor: false, logTests: false, reportTests: false, reportScoreTable: true },
-  jsonReporter: { fileName: path.join(REPORTS, `${part}.json`) }
+  jsonReporter: { fileName: path.join(REPORTS, `${name}.json`) }
 })
 
 const run = (command, args, given) =>
@@ -63,45 +64,60 @@ const run = (command, args, given) =>
   })
 
 /**
- * The figures of a report of Stryker. What no test reaches counts as not noticed; what cannot be compiled does not count.
+ * The figures of a report of Stryker. What no test reaches counts as not noticed; what cannot be loaded does not count.
  * @param {{ files: Record<string, { mutants: { status: string }[] }> }} report
- * @returns {Record<string, { killed: number, survived: number, score: number }>} by file, and `all`
+ * @returns {{ killed: number, survived: number }}
  */
 function figures({ files }) {
-  const rows = {}
-  const count = (row, status) => {
-    if (status === 'Killed' || status === 'Timeout') row.killed++
-    else if (status === 'Survived' || status === 'NoCoverage') row.survived++
-  }
-  const all = { killed: 0, survived: 0, score: 0 }
-  for (const [file, { mutants }] of Object.entries(files)) {
-    const row = { killed: 0, survived: 0, score: 0 }
-    for (const { status } of mutants) {
-      count(row, status)
-      count(all, status)
-    }
-    rows[file] = row
-  }
-  rows.all = all
-  for (const row of Object.values(rows)) row.score = (100 * row.killed) / Math.max(1, row.killed + row.survived)
-  return rows
+  const all = Object.values(files).flatMap(({ mutants }) => mutants.map(({ status }) => status))
+  const count = (...wanted) => all.filter(status => wanted.includes(status)).length
+  return { killed: count('Killed', 'Timeout'), survived: count('Survived', 'NoCoverage') }
+}
+
+/** The parts that a folder or a pattern means, with the pattern for Stryker. */
+function chosen(files) {
+  const folders = Object.keys(PARTS)
+  const asked = files.replace(/\/+$/, '')
+  const whole = folders.filter(folder => folder === asked || folder.startsWith(`${asked}/`))
+  if (whole.length > 0) return whole.map(folder => [folder, PARTS[folder].mutate])
+  const folder = folders.sort((a, b) => b.length - a.length).find(each => asked.startsWith(`${each}/`))
+  if (!folder) throw new Error(`known folders: ${folders.join(', ')}`)
+  return [[folder, asked]]
+}
+
+async function runPart(folder, mutate, jobs) {
+  const name = folder.replaceAll('/', '-')
+  const file = path.join(ROOT, REPORTS, `${name}-options.json`)
+  fs.mkdirSync(path.dirname(file), { recursive: true })
+  fs.writeFileSync(file, JSON.stringify(options({ name, mutate, spec: PARTS[folder].spec, jobs }), null, 2))
+  const cli = path.join(PACKAGES, 'core', 'bin', 'stryker.js')
+  const end = await run('nice', ['-n', '19', process.execPath, cli, 'run', file], { cwd: ROOT, stdio: 'inherit' })
+  if (end !== 0) throw new Error(`the mutation tests of ${folder} ended with ${end}`)
+  return figures(JSON.parse(fs.readFileSync(path.join(ROOT, REPORTS, `${name}.json`), 'utf8')))
 }
 
 /**
- * @param {{ part: string, files?: string[], jobs?: number, tell?: (text: string) => void }} given part: a name of PARTS; files: only these of it
- * @returns {Promise<ReturnType<typeof figures>>}
+ * @param {{ files?: string, jobs?: number, tell?: (text: string) => void }} [given] files: a folder or a pattern of files below lib/
+ * @returns {Promise<{ rows: { folder: string, killed: number, survived: number, score: number }[], failures: string[] }>}
  */
-async function mutation({ part, files, jobs = 2, tell = () => {} }) {
+async function mutation({ files = 'lib/codec', jobs = 2, tell = () => {} } = {}) {
+  const parts = chosen(files)
   await setUp(__dirname)
-  const { mutate, spec } = PARTS[part]
-  const config = path.join(ROOT, REPORTS, `stryker-${part}.json`)
-  fs.mkdirSync(path.dirname(config), { recursive: true })
-  fs.writeFileSync(config, JSON.stringify(options({ part, mutate: files ?? [mutate], spec, jobs }), null, 2))
-  const cli = path.join(PACKAGES, 'core', 'bin', 'stryker.js')
-  tell(`${part}: ${files ? files.join(', ') : mutate}`)
-  const end = await run('nice', ['-n', '19', process.execPath, cli, 'run', config], { cwd: ROOT, stdio: 'inherit' })
-  if (end !== 0) throw new Error(`the mutation tests of ${part} ended with ${end}`)
-  return figures(JSON.parse(fs.readFileSync(path.join(ROOT, REPORTS, `${part}.json`), 'utf8')))
+  const rows = []
+  for (const [folder, mutate] of parts) {
+    const { killed, survived } = await runPart(folder, mutate, jobs)
+    rows.push({ folder: mutate === PARTS[folder].mutate ? folder : mutate, killed, survived })
+  }
+  if (rows.length > 1) {
+    const sum = name => rows.reduce((all, row) => all + row[name], 0)
+    rows.push({ folder: files, killed: sum('killed'), survived: sum('survived') })
+  }
+  for (const row of rows) {
+    row.score = (100 * row.killed) / (row.killed + row.survived)
+    tell(`${row.folder}: ${row.score.toFixed(1)} % noticed, ${row.killed} of ${row.killed + row.survived}`)
+  }
+  const failures = rows.filter(({ score }) => !(score >= LEAST)).map(({ folder }) => `${folder}: less than ${LEAST} %`)
+  return { rows, failures }
 }
 
-module.exports = { PARTS, figures, mutation }
+module.exports = { PARTS, chosen, figures, mutation }

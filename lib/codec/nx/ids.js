@@ -18,7 +18,7 @@ const DEFAULT_IDS = Object.freeze([0xe2, 0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe
 function masterIdList(value, { stations = [] } = {}) {
   if (value === undefined || value === null || value === '') return DEFAULT_IDS
   const given = Array.isArray(value) ? value : typeof value === 'string' ? value.split(',').flatMap(expand) : [value]
-  if (given.length < 1 || given.length > LAST + 1) throw bad(value, 'give 1 to 63 numbers')
+  if (given.length < 1 || given.length > LAST + 1) throw bad(value, 'give 1 to 255 numbers')
   const ids = [...new Set(given)]
   for (const id of ids) checkId(id, stations)
   return Object.freeze(ids)

@@ -54,7 +54,22 @@ describe('NX address', () => {
   means('TC0..TC9', 'bit', [0x1d00, 10], 'TC0..TC9')
   means('@0x00C0..@0x00C7', 'word', [0x00c0, 8], '@0x00C0..@0x00C7')
 
+  means(`${' '.repeat(60)}M5 `, 'word', [0x00c5], 'M5')
+  means(`M${'0'.repeat(7)}5${' '.repeat(45)}..M7`, 'word', [0x00c5, 3], 'M5..M7')
+  means('@0x0000..@0x0FFF', 'word', [0, 4096], '@0x0000..@0x0FFF')
+  means('W0..W2047', 'word', [0x200, 2048], 'W0..W2047')
+
   refuses('', 'BAD_ADDRESS', /empty/)
+  refuses('  ', 'BAD_ADDRESS', /empty/)
+  refuses('?M5', 'BAD_ADDRESS', /neither/)
+  refuses('1M5', 'BAD_ADDRESS', /neither/)
+  refuses('ABCDE5', 'BAD_ADDRESS', /neither/)
+  refuses('?@5', 'BAD_ADDRESS', /neither/)
+  refuses('@5?', 'BAD_ADDRESS', /neither/)
+  refuses('@5.1x', 'BAD_ADDRESS', /neither/)
+  refuses('@0x00C5..M6', 'BAD_ADDRESS', /one area/)
+  refuses('@0x0000..@0x1000', 'BAD_COUNT', /4097 words.*the range is too long/)
+  refuses(`X${'0'.repeat(80)}`, 'BAD_ADDRESS', /^"X0{19}…" is not an address: it has more than 64 characters/)
   refuses('M', 'BAD_ADDRESS', /neither/)
   refuses('5', 'BAD_ADDRESS', /neither/)
   refuses('M-1', 'BAD_ADDRESS', /neither/)
@@ -104,6 +119,10 @@ describe('NX address', () => {
     assert.deepEqual(say('@0x01BF..@0x01C0'), [null, 'unconfirmed', false])
     assert.deepEqual(say('@0x01E0'), [null, 'unconfirmed', false])
     assert.deepEqual(say('@0x01BF.15..@0x01C0.0'), [null, 'unconfirmed', false])
+    // the last bit, the last word of a row: still inside
+    assert.deepEqual(say('@0x01BF.14..@0x01BF.15'), ['K', 'certain', true])
+    assert.deepEqual(say('@0x01BE..@0x01BF'), ['K', 'certain', true])
+    assert.deepEqual(say('@bit:0x1400..@bit:0x1401'), ['K', 'certain', true])
   })
 
   it('reads a bit of an area of words through its word', () => {
@@ -117,6 +136,14 @@ describe('NX address', () => {
     // bit addresses end at $FFFF, that is word $FFF; written raw a bit goes out as a bit
     assert.deepEqual(parseAddress('@0x1000.3', areas).throughWord, { address: 0x1000, bit: 3, writable: false })
     assert.equal(parseAddress('@0x0203.5', areas).throughWord, undefined)
+    assert.equal(parseAddress('@bit:0xFFFF', areas).throughWord, undefined)
+    assert.equal(parseAddress('@bit:0xFFFE..@bit:0xFFFF', areas).throughWord, undefined)
+    assert.equal(parseAddress('W3', areaMap([{ area: 'W', confirmed: true }])).writable, true)
+    assert.deepEqual(parseAddress('@0x0FFF.15..@0x1000.0', areas).throughWord, {
+      address: 0xfff,
+      bit: 15,
+      writable: false
+    })
   })
 
   it('says what goes out', () => {
@@ -141,6 +168,13 @@ describe('NX address', () => {
     assert.equal(say('word', 0x1e0), '@0x01E0')
     assert.equal(say('bit', 0x1e07), '@0x01E0.7')
     assert.equal(say('word', 0x13f, 2), '@0x013F..@0x0140')
+    assert.equal(say('word', 0x13e, 2), 'M126..M127')
+    assert.equal(say('bit', 0x13fe, 2), 'M127.14..M127.15')
+    assert.equal(say('word', 0xffff), '@0xFFFF')
+    assert.equal(say('bit', 0xfffff), '@0xFFFF.15')
+    assert.throws(() => say('bit', 0x100000), {
+      details: { address: '1048576', reason: 'no bit has this absolute address' }
+    })
     for (const [kind, address, count] of [
       ['word', 0x10000],
       ['word', -1],

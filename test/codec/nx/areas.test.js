@@ -40,6 +40,10 @@ describe('NX areas', () => {
     )
   })
 
+  it('says what each area is for', () => {
+    for (const { area, note } of AREAS) assert.match(note, /^[a-z].{3,}$/i, area)
+  })
+
   it('finds rows by name and by word address', () => {
     const areas = areaMap()
     assert.equal(areas.get('K').base, 0x140)
@@ -73,6 +77,24 @@ describe('NX areas', () => {
 
   it('keeps what a row with the same place knew', () => {
     assert.equal(areaMap([{ area: 'M', base: 0xc0, words: 128 }]).get('M').certainty, 'certain')
+    assert.equal(areaMap([{ area: 'M', base: '', words: ' 128 ' }]).get('M').certainty, 'certain')
+    assert.equal(areaMap([{ area: 'M', as: 'words' }]).get('M').certainty, 'unconfirmed')
+    assert.equal(areaMap([{ area: 'M', base: 0xe00 }]).get('M').certainty, 'unconfirmed')
+  })
+
+  it('a row may reach to the last word, and one of contacts to the last bit', () => {
+    assert.equal(areaMap([{ area: 'X', base: 0xe00, words: 0xf200 }]).at(0xffff).area, 'X')
+    assert.equal(areaMap([{ area: 'X', base: 0xe00, words: 0x200, as: 'bits' }]).at(0xfff).area, 'X')
+    const [first] = areaMap([
+      ...AREAS.map(({ area }) => ({ area, remove: true })),
+      { area: 'X', base: 0, words: 65536 }
+    ]).list
+    assert.equal(first.words, 65536)
+  })
+
+  it('has no note unless one is given; a long one is cut', () => {
+    assert.equal(areaMap([{ area: 'X', base: 0xe00, words: 1 }]).get('X').note, '')
+    assert.equal(areaMap([{ area: 'M', note: 'x'.repeat(101) }]).get('M').note, 'x'.repeat(100))
   })
 
   it('removes rows, so that another map fits', () => {
@@ -113,6 +135,15 @@ describe('NX areas', () => {
     refused([{ area: 'W', confirmd: true }], /unknown property confirmd/)
     refused([{ area: 'W', note: 5 }], /note/)
     refused(new Array(65).fill({ area: 'M' }), /at most 64/)
+    refused(new Array(64).fill({ area: 'M' }), /two rows/)
+    refused('M', /table/)
+    refused(new Array(65), /table/)
+    refused([7], /\?/)
+    for (const base of ['0x1C0x', 'x0x1C0', '1C0', '0$1', '12.5'])
+      refused([{ area: 'X', base, words: 1 }], /"base" must be/)
+    refused([{ area: 'X', base: 0x10001, words: 1 }], /"base" must be/)
+    refused([{ area: 'X', base: 0x10000, words: 1 }], /after the last word/)
+    refused([{ area: 'X', base: '', words: 1 }], /"base" must be/)
   })
 
   it('refuses hostile rows', () => {

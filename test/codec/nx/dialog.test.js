@@ -82,6 +82,11 @@ describe('NX conversation: reads are repeated', () => {
     assert.deepEqual([got.steps.length, got.result.master], [3, 0xe4])
   })
 
+  it('the only ID there is may be the awaited one and a late one: its answer is taken', () => {
+    const ids = { take: () => 0xe2, ok() {}, failed() {}, resting: () => [0xe2] }
+    assert.equal(read([answer(0xe2, 0xa3, WORDS_INFO)], { ids }).result.attempts, 1)
+  })
+
   it('nor is a frame inside a late answer to the former ID', () => {
     const inside = answer(0xe3, 0xa3, WORDS_INFO)
     const late = answer(0xe2, 0xa3, [...inside, 0, 0])
@@ -229,6 +234,7 @@ describe('NX conversation: writes are never repeated', () => {
 
   it('says what was written', () => {
     assert.match(write([LOST]).error.message, /word 0140h/)
+    assert.equal(write([LOST]).error.details.item, 'word 0140h')
     const bits = { ask: 'writeBits', base: 0x1bfc, values: [true, false, true] }
     assert.equal(write([LOST], {}, bits).error.details.item, 'bit 1BFCh and 2 more')
     assert.match(write([LOST], { item: 'setpoint' }).error.message, /setpoint/)
@@ -289,6 +295,17 @@ describe('NX conversation: repeat by an RR alone', () => {
     )
   })
 
+  it('the ID of a repeat that was answered, or refused, does not rest; one that the line gave up does', () => {
+    const ids = masterIds()
+    read([answer(0xe9, 0xa3, WORDS_INFO)], { again: 0xe9, ids })
+    read([error(2, 0x83, 0xe9), answer(0xe2, 0xa3, WORDS_INFO)], { again: 0xe9, ids })
+    assert.deepEqual(ids.resting(), [])
+    const dialog = readDialog(WORDS, fresh({ again: 0xe9, ids }))
+    dialog.next()
+    dialog.return()
+    assert.deepEqual(ids.resting(), [0xe9])
+  })
+
   it('the ID of a repeat that failed rests', () => {
     const ids = masterIds()
     read([LOST, answer(0xe2, 0xa3, WORDS_INFO)], { again: 0xe9, ids })
@@ -320,7 +337,17 @@ describe('NX conversation: stations and settings', () => {
     assert.equal(code(readDialog, { ask: 'readProgram' }), 'FUNCTION_REFUSED')
     assert.equal(code(readDialog, { ...WORDS, count: 300 }), 'BAD_COUNT')
     assert.equal(code(writeDialog, { ...WRITE, values: [70000] }), 'BAD_VALUE')
+    const details = (dialog, query, options) => play(dialog(query, fresh(options)), []).error.details
+    assert.deepEqual(details(readDialog, WRITE), { function: 'writeWords as a read' })
+    assert.deepEqual(details(writeDialog, WORDS), { function: 'readWords as a write' })
+    const reason = 'it must be 0 to 191, or 255 for the only PLC of the line'
+    assert.deepEqual(details(readDialog, WORDS, { station: 192 }), { station: 192, reason })
     const same = { station: 5, ids: masterIds({ ids: [5] }) }
+    assert.deepEqual(details(readDialog, WORDS, same), { id: 5, reason: 'the station has this number' })
+    for (const station of [0, 191]) {
+      const { value } = readDialog(WORDS, fresh({ station })).next()
+      assert.equal(value.send[0], station)
+    }
     assert.equal(code(readDialog, WORDS, same), 'BAD_MASTER_ID')
     assert.equal(code(writeDialog, WRITE, same), 'BAD_MASTER_ID')
   })

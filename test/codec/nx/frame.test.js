@@ -1,7 +1,7 @@
 'use strict'
 const assert = require('node:assert/strict')
 const fc = require('fast-check')
-const { encodeFrame, decodeFrame, frameLength } = require('../../../lib/codec/nx/frame')
+const { LONGEST, SHORTEST, encodeFrame, decodeFrame, frameLength } = require('../../../lib/codec/nx/frame')
 const { frame, hex, show } = require('../support/oracle')
 const { EXCHANGES, QA, RR, ERROR_2 } = require('../../vectors/nx')
 
@@ -41,11 +41,22 @@ describe('NX frame', () => {
     }
   })
 
+  it('says what is wrong', () => {
+    const good = { to: 1, from: 0xe2, fn: 3, info: [0] }
+    const says = (frameParts, details) => assert.throws(() => encodeFrame({ ...good, ...frameParts }), { details })
+    says({ info: [] }, { setting: 'info', value: 'empty', reason: 'LEN 0 means 256 bytes' })
+    says({ info: new Uint8Array(257) }, { what: 'INFO', got: 257, most: 256 })
+    for (const key of ['to', 'from', 'fn'])
+      says({ [key]: 256 }, { setting: key, value: 256, reason: 'it must be a byte, 0 to 255' })
+    assert.deepEqual([SHORTEST, LONGEST], [7, 262])
+  })
+
   it('its length is known from the fourth byte on', () => {
     const bytes = hex(RR)
     for (const n of [0, 1, 2, 3]) assert.equal(frameLength(bytes.subarray(0, n)), 0)
     for (const n of [4, 5, 6, 7]) assert.equal(frameLength(bytes.subarray(0, n)), 7)
     assert.equal(frameLength(hex(`00 ${RR}`), 1), 7)
+    assert.equal(frameLength(hex(`00 ${RR}`).subarray(0, 4), 1), 0)
   })
 
   it('is decoded where it begins, and leaves what follows', () => {

@@ -6,6 +6,10 @@ describe('NX master IDs: the setting', () => {
   it('takes a number, a list, a range', () => {
     assert.deepEqual([...masterIdList(undefined)], [0xe2, 0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe9])
     assert.equal(masterIdList(''), DEFAULT_IDS)
+    assert.equal(masterIdList(null), DEFAULT_IDS)
+    assert.deepEqual([...masterIdList([0, 254])], [0, 254])
+    assert.equal(masterIdList('0..254').length, 255)
+    assert.deepEqual([...masterIdList('226..226')], [226])
     assert.deepEqual([...masterIdList(226)], [226])
     assert.deepEqual([...masterIdList('226')], [226])
     assert.deepEqual([...masterIdList('$E2..$E4')], [226, 227, 228])
@@ -42,6 +46,26 @@ describe('NX master IDs: the setting', () => {
       assert.throws(() => masterIdList(bad), { code: 'BAD_MASTER_ID' }, String(bad))
     }
   })
+
+  it('says why', () => {
+    const stations = [2, 255]
+    const cases = [
+      [[], '', 'give 1 to 255 numbers'],
+      [new Array(256).fill(226), new Array(256).fill(226).join(), 'give 1 to 255 numbers'],
+      [255, '255', 'it must be a whole number from 0 to 254'],
+      ['226, x1', 'x1', 'it is not a number'],
+      ['1x, 226', '1x', 'it is not a number'],
+      ['1$', '1$', 'it is not a number'],
+      [' 228..226 ', '228..226', 'it is not a range'],
+      ['250..256', '250..256', 'it is not a range'],
+      ['250..255', '255', 'it must be a whole number from 0 to 254'],
+      [2, '2', 'a station of this line has this number'],
+      [3, '3', 'with station 255 the number of the PLC is not known']
+    ]
+    for (const [value, id, reason] of cases) {
+      assert.throws(() => masterIdList(value, { stations }), { code: 'BAD_MASTER_ID', details: { id, reason } })
+    }
+  })
 })
 
 describe('NX master IDs: the allocator', () => {
@@ -58,6 +82,15 @@ describe('NX master IDs: the allocator', () => {
     assert.deepEqual([all.take(), all.take(), all.take()], [225, 226, 225])
     all.free(224)
     assert.deepEqual([all.take(), all.take()], [226, 224])
+  })
+
+  it('uses the only one that does not rest, again and again', () => {
+    const all = masterIds({ ids })
+    all.failed(all.take())
+    all.failed(all.take())
+    assert.deepEqual([all.take(), all.take(), all.take()], [226, 226, 226])
+    all.free(999)
+    assert.deepEqual(all.resting(), [224, 225])
   })
 
   it('uses the one that has rested longest if all rest', () => {

@@ -194,7 +194,8 @@ describe('NX match: what is taken besides', () => {
   })
   it('QA in 4-step, no service', () => {
     assert.ok(taken({ steps: 4 }, hex(QA)))
-    assert.ok(taken({}, frame([0xe2, 1, 0x00], [0])))
+    for (const info of [0, 1, 5]) assert.ok(taken({}, frame([0xe2, 1, 0x00], [info])), `${info}`)
+    assert.equal(taken({}, frame([0xe2, 1, 0x00], [6])), false)
   })
   it('$A2 ($82) for word and mixed writes, where allowed', () => {
     const mixed = { ask: 'writeMixed', writes: [{ kind: 'bit', address: 1, value: true }] }
@@ -224,6 +225,36 @@ describe('NX match: pieces of what is stepped over', () => {
     assert.deepEqual(match(WORDS, { late: [0xe3] })(late.subarray(0, 4)), { need: 8, ours: false })
     assert.deepEqual(match(WORDS, { late: [0xe3] })(hex('E3 02')), { skip: 2 })
     assert.deepEqual(match(WORDS, { late: [0xe3] })(hex('E3 01 A4')), { skip: 3 })
+    assert.deepEqual(match(WORDS, { late: [0xe3] })(hex('00 E3')), { skip: 1 }, 'it may begin with the last byte')
+  })
+
+  it('a header that is none is given up with its third byte', () => {
+    assert.deepEqual(match()(hex('E2 01')), { need: 7 })
+    assert.deepEqual(match()(hex('E2 01 A4')), { skip: 3 })
+    assert.deepEqual(match()(hex('E2 02')), { skip: 2 })
+  })
+
+  it('our echo is known by its header, wherever it begins, and whatever its data are', () => {
+    const ack = frame([0xe2, 1, 0xa4], [0])
+    const query = { ask: 'writeWords', base: 0x140, values: [0x01e2, 0x01a4, ack.readUInt16LE(4), ack[6]] }
+    const sent = frame([1, 0xe2, 0x24], [0x40, 0x01, ...ack, 0])
+    const look = match(query, { sent })
+    assert.deepEqual(look(sent), { skip: sent.length })
+    assert.deepEqual(look(Buffer.concat([hex('00'), sent])), { skip: 1 })
+    for (let at = 4; at < sent.length; at++) {
+      const damaged = Buffer.from(sent)
+      damaged[at] ^= 0xff
+      assert.deepEqual(look(damaged), { skip: sent.length }, `byte ${at}`)
+    }
+  })
+
+  it('what begins behind a damaged answer is waited for, as ours', () => {
+    const damaged = hex('E2 01 A3 04 34 12 CD AB 8D 12')
+    assert.deepEqual(match()(Buffer.concat([damaged, R.subarray(0, 4)])), { need: 20, ours: true })
+    // its last seven bytes are an error frame, CRC and all
+    const inner = frame([0xe2, 1, 0xa3], [2])
+    const end = Buffer.concat([hex('E2 01 A3 08 00 00 00'), inner])
+    assert.deepEqual(verdictOf({}, end, { ask: 'readWords', base: 0, count: 4 }), { bad: 'CRC', length: 14 })
   })
 })
 

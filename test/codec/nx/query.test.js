@@ -7,6 +7,7 @@ const {
   encodeAcknowledge,
   encodeError,
   encodeNoService,
+  expectedAnswers,
   readAnswer
 } = require('../../../lib/codec/nx/answer')
 const { decodeFrame } = require('../../../lib/codec/nx/frame')
@@ -135,6 +136,11 @@ describe('NX queries: the PLC side refuses', () => {
   })
   it('INFO that makes no sense: error 3', () => {
     assert.equal(answer(0x00, [1]), 3)
+    assert.equal(answer(0x00, [0, 0]), 3)
+    assert.equal(answer(0x22, [0, 0, 255, 1]), 3, 'one bit of two is none')
+    assert.equal(answer(0x25, [0, 0, 0, 0x80]), 3, 'one place of two is none')
+    assert.equal(answer(0x26, [0, 0, 255, 0]), 3, 'half an address follows')
+    assert.equal(answer(0x26, [0, 0, 255, 0, 0]), 3, 'an address without a value follows')
     assert.equal(answer(0x23, [0, 0]), 3)
     assert.equal(answer(0x23, [0, 0, 1, 0]), 3)
     assert.equal(answer(0x22, [0, 0]), 3)
@@ -202,6 +208,46 @@ describe('NX answers: what they say', () => {
   })
 })
 
+describe('NX answers: the headers that are expected', () => {
+  // manual "Communication function codes": answers are Q + 80h; of the 2-step codes, Q is the 4-step one + 20h
+  const listed = (query, { steps, phase, nonStandardAck }) => {
+    const four = CODE[query.ask]
+    const [code, printed] = steps === 2 ? [0xa0 + four, 0xa2] : [0x80 + four, 0x82]
+    const [words, bits] = [query.ask === 'readWords', query.ask === 'readBits']
+    const length = words ? query.count * 2 : bits ? query.count : 1
+    const repeatable = words || bits
+    const rows = []
+    if (steps === 4 && phase === 'query') rows.push(['acknowledge', 0x80, 1])
+    else {
+      rows.push(['values', code, length])
+      if (nonStandardAck && !repeatable && code !== printed) rows.push(['nonStandard', printed, 1])
+    }
+    for (const fn of new Set([0x80 + four, 0xa0 + four, 0x80, 0xa0])) rows.push(['error', fn, 1])
+    return [...rows, ['noService', 0, 1]]
+  }
+  const modes = [2, 4].flatMap(steps =>
+    ['query', 'request'].flatMap(phase => [false, true].map(nonStandardAck => ({ steps, phase, nonStandardAck })))
+  )
+  const queries = [
+    ...Array.from({ length: 255 }, (_, i) => ({ ask: 'readBits', base: 0, count: i + 1 })),
+    ...Array.from({ length: 128 }, (_, i) => ({ ask: 'readWords', base: 0, count: i + 1 })),
+    { ask: 'writeBits', base: 0, values: [true] },
+    { ask: 'writeWords', base: 0, values: [1] },
+    { ask: 'writeMixed', writes: [{ kind: 'bit', address: 1, value: true }] }
+  ]
+
+  it('are those of the manual for each length and mode, also when they were looked up before', () => {
+    for (const round of [1, 2]) {
+      for (const mode of modes) {
+        for (const query of queries) {
+          const got = expectedAnswers(query, mode).map(({ kind: what, fn, length }) => [what, fn, length])
+          assert.deepEqual(got, listed(query, mode), `${round} ${JSON.stringify([mode, query])}`)
+        }
+      }
+    }
+  })
+})
+
 describe('NX queries: limits', () => {
   const send = (query, settings) =>
     codeOf(() => encodeQuery(query, { ...ends, limits: settings && limitsOf(settings) }))
@@ -250,6 +296,23 @@ describe('NX queries: limits', () => {
     assert.equal(send({ ask: 'readWords', base: 0, count: 33 }, { readWords: 32 }), 'BAD_COUNT')
     assert.equal(send({ ask: 'readWords', base: 0, count: 32 }, { readWords: '32' }), 'sent')
     assert.deepEqual(limitsOf({ readWords: undefined }), limitsOf())
+    assert.equal(send(writes(4, 'word'), { info: 18 }), 'sent')
+    assert.equal(send(writes(5, 'word'), { info: 18 }), 'FRAME_TOO_LONG')
+    assert.equal(send(writes(6, 'bit'), { info: 18 }), 'sent')
+    assert.equal(send(writes(7, 'bit'), { info: 18 }), 'FRAME_TOO_LONG')
+    assert.equal(send(places(9, 'word'), { info: 18 }), 'sent')
+    assert.equal(send(places(10, 'word'), { info: 18 }), 'FRAME_TOO_LONG')
+    assert.deepEqual([limitsOf({ info: 3 }).info, limitsOf({ readBits: 1 }).readBits], [3, 1])
+    assert.equal(limitsOf({ readBits: ' 7 ' }).readBits, 7)
+    for (const readBits of ['7x', 'x7', '1e1', '0x07', '', [7], true, null]) {
+      assert.throws(() => limitsOf(/** @type {any} */ ({ readBits })), { code: 'BAD_SETTING' }, String(readBits))
+    }
+    assert.throws(() => limitsOf({ info: 2 }), {
+      details: { setting: 'limits.info', value: 2, reason: 'it must be 3 to 256' }
+    })
+    assert.throws(() => limitsOf({ words: 1 }), {
+      details: { setting: 'limits.words', value: 1, reason: 'there is no such limit' }
+    })
     for (const settings of [
       { writeWords: 128 },
       { readWords: 0 },
@@ -272,6 +335,61 @@ describe('NX queries: limits', () => {
       assert.equal(send({ ask: 'readMixed', addresses: [{ kind: each, address: 0x3fff }] }), 'sent')
       assert.equal(send({ ask: 'readMixed', addresses: [{ kind: each, address: 0x4000 }] }), 'BAD_ADDRESS')
     }
+  })
+
+  it('a refusal says what it is about', () => {
+    const row = { ask: 'readWords', base: 0x1bf, count: 1 }
+    const bit = { kind: 'bit', address: 7 }
+    const range = { least: 1, most: 128 }
+    const cases = [
+      [
+        { ...row, count: 0 },
+        { count: 0, unit: 'words', reason: 'there is nothing to ask for', ...range }
+      ],
+      [
+        { ...row, count: 129 },
+        { count: 129, unit: 'words', reason: 'too many for one frame', ...range }
+      ],
+      [
+        { ...row, count: 1.5 },
+        { count: 1.5, unit: 'words', reason: 'no count', ...range }
+      ],
+      [
+        { ask: 'readMixed', addresses: 'M0' },
+        { count: 'no', unit: 'addresses', reason: 'they are not given as a list', ...range }
+      ],
+      [
+        { ...row, base: 65536 },
+        { address: '65536', reason: 'the last word address is 65535' }
+      ],
+      [
+        { ask: 'readBits', base: 0xffff, count: 2 },
+        { address: '65535', reason: '2 bits from there end after the last address 65535' }
+      ],
+      [
+        { ask: 'readBits', base: -1, count: 2 },
+        { address: '-1', reason: 'the last bit address is 65535' }
+      ],
+      [
+        { ask: 'readMixed', addresses: [{ address: 7 }] },
+        { address: '7', reason: 'it must be a bit or a word' }
+      ],
+      [
+        { ask: 'readMixed', addresses: [{ kind: 'word', address: 0x4000 }] },
+        { address: '16384', reason: 'in mixed frames the last word address is 16383' }
+      ],
+      [
+        { ask: 'writeWords', base: 0x1bf, values: [1, 70000] },
+        { item: 'word 01C0h', value: '70000', reason: 'a word is a whole number from 0 to 65535' }
+      ],
+      [
+        { ask: 'writeMixed', writes: [{ ...bit, value: 1 }] },
+        { item: 'bit 0007h', value: '1', reason: 'a bit is true or false' }
+      ],
+      [writes(65, 'word'), { what: 'the query or its answer', got: 260, most: 256 }],
+      [{ ask: 'readProgram' }, { function: 'readProgram' }]
+    ]
+    for (const [query, details] of cases) assert.throws(() => encodeQuery(query, ends), { details })
   })
 
   it('hostile queries have a code', () => {

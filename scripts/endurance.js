@@ -11,11 +11,12 @@
  *   npm run endurance -- coverage [lib/codec] which branches no test takes, and why; a folder below its limit is a failure
  *   npm run endurance -- mutation [lib/codec] changes the code at each place; fewer than 85 % of them noticed by the tests is a failure.
  *                                             A folder or a pattern of files below lib/codec or lib/line; Stryker is installed for it
- * and those with faults on real ports: endurance-faults.js
+ * and those with faults on real ports: endurance-faults.js; with hostile input: endurance-hostile.js
  */
 
 const path = require('node:path')
 const { FAULT_RUNS } = require('./endurance-faults.js')
+const { HOSTILE_RUNS } = require('./endurance-hostile.js')
 
 const support = path.join(__dirname, '..', 'test', 'support')
 const print = text => process.stdout.write(`${text}\n`)
@@ -28,6 +29,7 @@ const whole = (text, what) => {
 
 const RUNS = {
   ...FAULT_RUNS,
+  ...HOSTILE_RUNS,
 
   /** @param {string} [count] */
   async redeploys(count = '1000') {

@@ -71,7 +71,7 @@ class Connection {
   /** A transport that was given up is not heard any more. */
   #handlers(transport) {
     const mine = fn => value => {
-      if (this.#transport === transport) fn(value)
+      if (this.#transport === transport) return fn(value)
     }
     return {
       opened: mine(() => this.#opened()),
@@ -129,6 +129,11 @@ class Connection {
 
   hint(count, at) {
     this.#transport?.hint(count, at)
+  }
+
+  /** Whether bytes have come that nobody has seen yet. */
+  get waiting() {
+    return this.#transport?.waiting ?? false
   }
 
   /** Asks the transport whether it is still there: `silent` requests in a row were not answered. */

@@ -31,7 +31,7 @@ class Exchange {
 
   /**
    * @param {{ clock: any, settings: any, times: any, echo: any, link: any }} options
-   *   link: `{ name, write(bytes, done), hint(count, at), stray(bytes), skipped(bytes), echoed(bytes) }`
+   *   link: `{ name, write(bytes, done), hint(count, at), waiting(), stray(bytes), skipped(bytes), echoed(bytes) }`
    */
   constructor({ clock, settings, times, echo, link }) {
     this.#clock = clock
@@ -51,9 +51,9 @@ class Exchange {
     return this.#sendEnd
   }
 
-  /** When the last byte came or went, ms. */
+  /** When the last byte came or went, ms; those that have come and wait to be looked at come now. */
   get quietSince() {
-    return Math.max(this.#lastByteAt, this.#sendEnd)
+    return this.#link.waiting() ? this.#clock.now() : Math.max(this.#lastByteAt, this.#sendEnd)
   }
 
   /**

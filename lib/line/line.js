@@ -252,11 +252,13 @@ class Line extends EventEmitter {
 
   // --- bytes and what was noticed
 
+  /** @returns {number|undefined} how many messages it was, where the line listens */
   #data(bytes) {
     this.#recorder.stats.add('bytesIn', bytes.length)
-    if (bytes.length === 0) return
-    if (this.#use.kind === 'messages') this.#stream.data(bytes)
-    else this.#requests.data(bytes)
+    if (bytes.length === 0) return undefined
+    if (this.#use.kind === 'messages') return this.#stream.data(bytes)
+    this.#requests.data(bytes)
+    return undefined
   }
 
   #late({ station, lateness, timeout, bound }) {

@@ -21,11 +21,11 @@ class Requests {
 
   /**
    * @param {{ name: string, clock: any, settings: any, times: any, recorder: any, memories: Map<any, any>,
-   *   write: (bytes: Buffer, done: (error?: any) => void) => void, hint: (count: number, at: number) => void }} parts
+   *   write: (bytes: Buffer, done: (error?: any) => void) => void, hint: (count: number, at: number) => void, waiting: () => boolean }} parts
    * @param {{ refusal: () => any, rejection: () => any, isOpen: () => boolean, late: (fact: any) => void, answered: () => void,
    *   troubled: (error: any) => void }} host the line
    */
-  constructor({ name, clock, settings, times, recorder, memories, write, hint }, host) {
+  constructor({ name, clock, settings, times, recorder, memories, write, hint, waiting }, host) {
     this.#name = name
     this.#settings = settings
     this.#host = host
@@ -38,7 +38,7 @@ class Requests {
     this.#echo = new Echo(settings.echo, () => clock.now())
     const stray = bytes => this.#unclaimed('stray', bytes)
     const skipped = bytes => this.#unclaimed('skipped', bytes)
-    const link = { name, write, hint, stray, skipped, echoed: bytes => recorder.echoed(bytes) }
+    const link = { name, write, hint, waiting, stray, skipped, echoed: bytes => recorder.echoed(bytes) }
     this.#exchange = new Exchange({ clock, settings, times, echo: this.#echo, link })
     const parts = { exchange: this.#exchange, scheduler: this.#scheduler, quarantine: this.#quarantine, recorder }
     const { refusal, answered, troubled } = host

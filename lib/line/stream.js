@@ -34,7 +34,7 @@ class Stream {
 
   /**
    * @param {{ name: string, clock: any, settings: any, times: any, recorder: any, memories: Map<any, any>,
-   *   write: (bytes: Buffer, done: (error?: any) => void) => void }} parts
+   *   write: (bytes: Buffer, done: (error?: any) => void) => void, waiting: () => boolean }} parts
    * @param {{ refusal: () => any, rejection: () => any, isOpen: () => boolean, answered: () => void, troubled: (error: any) => void,
    *   check: () => void, use: import('./use').Use }} host the line
    */
@@ -47,7 +47,8 @@ class Stream {
     this.#flow = new Flow(flowOptions(), { clock, settings })
     this.#echo = new OwnEcho(parts)
     const { refusal, troubled } = host
-    const lastByteAt = () => this.#lastByteAt
+    // bytes that have come and wait to be looked at come now
+    const lastByteAt = () => (parts.waiting() ? clock.now() : this.#lastByteAt)
     const sent = (bytes, end) => this.#echo.sent(bytes, end)
     this.#outbox = new Outbox(
       { ...parts, flow: this.#flow },
@@ -142,7 +143,7 @@ class Stream {
 
   // --- bytes
 
-  /** @param {Buffer} received */
+  /** @param {Buffer} received @returns {number} messages that it completed */
   data(received) {
     this.#lastByteAt = this.#clock.now()
     this.#heard += received.length
@@ -152,9 +153,10 @@ class Stream {
     const { bytes, stops } = this.#flow.take(received.subarray(own))
     if (stops > 0) this.#recorder.stats.add('stops', stops)
     if (this.#flow.stopped !== stopped) this.#outbox.changed()
-    if (bytes.length === 0) return
-    if (this.#splitter) this.#split(() => this.#splitter.push(bytes))
-    else this.#recorder.unclaimed('stray', bytes)
+    if (bytes.length === 0) return 0
+    if (this.#splitter) return this.#split(() => this.#splitter.push(bytes))
+    this.#recorder.unclaimed('stray', bytes)
+    return 0
   }
 
   get #heldUntil() {
@@ -171,6 +173,7 @@ class Stream {
     if (splitter?.held > 0 && splitter.silence > 0) this.#silence.wait(splitter.silence, this.#flush)
     else this.#silence.stop()
     if (wasHeld && this.#heldUntil === -Infinity) this.#outbox.quieter()
+    return messages.length
   }
 
   #flush = () => this.#deliverAll(attempt(() => this.#splitter?.flush() ?? []))

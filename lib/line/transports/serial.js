@@ -2,6 +2,7 @@
 
 const fs = require('node:fs')
 const { PlcError } = require('../../error')
+const { Intake } = require('./intake')
 const { createPace, pacedBinding } = require('./paced-binding')
 const { goneError, openError } = require('./port-errors')
 
@@ -42,6 +43,7 @@ class SerialTransport {
   #clock
   #binding
   #pace
+  #intake
   /** @type {any} */
   #port = null
   /** @type {any} */
@@ -58,6 +60,11 @@ class SerialTransport {
     this.#clock = clock
     this.#binding = binding
     this.#pace = createPace(clock)
+    this.#intake = new Intake({
+      clock,
+      data: bytes => this.#handlers.data(bytes),
+      hold: held => (held ? this.#port.pause() : this.#port.resume())
+    })
   }
 
   /** What is claimed. A name that leads nowhere yet stands for itself. */
@@ -110,7 +117,7 @@ class SerialTransport {
     if (this.#state !== 'opening') return
     this.#state = 'open'
     this.#port.on('data', bytes => {
-      if (this.#state === 'open') this.#handlers.data(bytes)
+      if (this.#state === 'open') this.#intake.take(bytes)
     })
     this.#handlers.opened()
   }
@@ -120,6 +127,7 @@ class SerialTransport {
     const was = this.#state
     this.#state = 'closed'
     this.#pace.stop()
+    this.#intake.stop()
     this.#clock.clearTimer(this.#delay)
     const gone = goneError(error, this.#settings.path)
     for (const done of [...this.#writes]) done(gone)
@@ -145,6 +153,11 @@ class SerialTransport {
     this.#pace.hint(at)
   }
 
+  /** Whether bytes have come that nobody has seen yet: the wire is not silent then. */
+  get waiting() {
+    return this.#intake.waiting
+  }
+
   /** A request was not answered: is the port still there, or has the system not told that it went? */
   check() {
     if (!this.#device || this.#state !== 'open') return
@@ -161,6 +174,7 @@ class SerialTransport {
     if (was === 'closed' || was === 'new') return this.#tellClosed()
     this.#state = 'closing'
     this.#pace.stop()
+    this.#intake.stop()
     this.#writes.clear()
     if (was === 'open' || (was === 'opening' && this.#port.isOpen)) this.#shut()
   }

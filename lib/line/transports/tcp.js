@@ -2,6 +2,7 @@
 
 const net = require('node:net')
 const { PlcError } = require('../../error')
+const { Intake } = require('./intake')
 
 const CLOSE_LIMIT = 300
 /** After so many requests in a row without an answer the connection is taken for half-open; then after twice as many, … */
@@ -33,6 +34,8 @@ class TcpTransport {
   #socket = null
   /** @type {any} */
   #handlers = null
+  /** @type {any} */
+  #intake = null
   #timer = null
   #open = false
   #ended = false
@@ -55,8 +58,13 @@ class TcpTransport {
     if (keepAlive > 0) socket.setKeepAlive(true, keepAlive)
     this.#timer = this.#clock.setTimer(() => this.#lose(`no connection within ${connectTimeout} ms`), connectTimeout)
     socket.once('connect', () => this.#opened())
+    this.#intake = new Intake({
+      clock: this.#clock,
+      data: handlers.data,
+      hold: held => (held ? socket.pause() : socket.resume())
+    })
     socket.on('data', bytes => {
-      if (!this.#ended) handlers.data(bytes)
+      if (!this.#ended) this.#intake.take(bytes)
     })
     socket.on('error', error => this.#lose(REASONS[error['code']] ?? error.message))
     socket.on('end', () => this.#lose('the serial server closed the connection'))
@@ -72,11 +80,17 @@ class TcpTransport {
 
   #lose(reason) {
     if (this.#ended) return
-    this.#ended = true
-    this.#clock.clearTimer(this.#timer)
+    this.#end()
     this.#socket.destroy()
     if (this.#open) this.#handlers.closed(this.#broken(reason))
     else this.#handlers.failed(new PlcError('CONNECT_FAILED', { path: this.#path, reason }))
+  }
+
+  /** Nothing more is heard. */
+  #end() {
+    this.#ended = true
+    this.#clock.clearTimer(this.#timer)
+    this.#intake?.stop()
   }
 
   #broken(reason) {
@@ -91,6 +105,11 @@ class TcpTransport {
   /** Nothing is known before the bytes come: the network has its own time. */
   hint() {}
 
+  /** Whether bytes have come that nobody has seen yet: the wire is not silent then. */
+  get waiting() {
+    return this.#intake?.waiting ?? false
+  }
+
   /** @param {number} silent requests in a row without an answer */
   check(silent) {
     if (isSuspicious(silent)) this.#lose(`${silent} requests in a row without an answer: the connection is dead`)
@@ -99,8 +118,7 @@ class TcpTransport {
   close(done) {
     const socket = this.#socket
     const wasOpen = this.#open && !this.#ended
-    this.#ended = true
-    this.#clock.clearTimer(this.#timer)
+    this.#end()
     if (!socket || socket.closed) return done()
     socket.once('close', () => {
       this.#clock.clearTimer(this.#timer)

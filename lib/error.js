@@ -57,6 +57,14 @@ const CODES = Object.freeze({
     'a retained MQTT message was not written to {item}',
     'Publish set values without retain, or accept retained messages in the node.'
   ],
+  STEP_TOO_LARGE: [
+    '{item} was not written: it is {now} now, and {value} is a step of more than {most}',
+    'Go there in smaller steps, or allow a larger step in the tag table.'
+  ],
+  WRITE_TOO_SOON: [
+    '{item} was not written: it may be written again in {wait} ms',
+    'Write less often, let the node write only the latest value, or shorten the write interval of the device.'
+  ],
   SENDING_OFF: ['{node} sent nothing: it only receives', 'Set Access to "receive and send" in the node.'],
   FUNCTION_REFUSED: [
     'the function {function} is never sent',

@@ -2,7 +2,7 @@
 const { PlcError } = require('../lib/index.js')
 const { startReading } = require('./reading')
 const { openSession } = require('./session')
-const { startWriting } = require('./writing')
+const { refuseWrite, startWriting } = require('./writing')
 
 const BROADCAST = 0
 const refused = (what, reason) => new PlcError('BROADCAST_REFUSED', { what, reason })
@@ -19,10 +19,16 @@ const writingBesideReading = session => {
   const { tagFault } = session.deviceNode
   if (!tagFault) return startWriting(session, { output: 1 })
   session.warn(tagFault)
-  return () => Promise.reject(tagFault)
+  return msg => {
+    refuseWrite(session, msg, tagFault)
+    return Promise.reject(tagFault)
+  }
 }
 
 const asks = msg => Object.hasOwn(msg, 'items')
+
+/** Whether a message to a faulty node was to write. */
+const writes = ({ settings }, msg) => settings?.mode === 'write' || (settings?.mode === 'both' && !asks(msg))
 
 /** Of a node that both read and wrote: its questions must not become set values. */
 const checkWrites = msg => {
@@ -62,7 +68,10 @@ module.exports = function (RED) {
       }
     })
     this.on('input', (msg, send, done) => {
-      if (session.fault) return done(session.fault)
+      if (session.fault) {
+        if (writes(session, msg)) refuseWrite(session, msg, session.fault)
+        return done(session.fault)
+      }
       const reads = work.reads(msg)
       const failed = reads ? error => session.failed(error, done) : done
       work[reads ? 'ask' : 'write'](msg, send).then(() => done(), failed)

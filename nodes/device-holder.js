@@ -9,8 +9,6 @@ const ADVICE = ['late', 'jammed', 'fixedMasterId', 'slow']
 const adviser = deviceNode => {
   const told = new Set()
   return ({ event, station, cause, remedy }) => {
-    // the node whose message was written tells of that itself
-    if (event === 'audit') return
     if (!ADVICE.includes(event) || told.has(event)) return
     if (station !== null && station !== deviceNode.station) return
     told.add(event)

@@ -34,7 +34,8 @@ const openSeat = (line, { id, label, type, settings }) => {
 
 /** What a node gets of its seat: what came meanwhile comes first. */
 const portOf = seat => ({
-  send: value => seat.port.send(value),
+  send: (value, options) => seat.port.send(value, options),
+  refused: (value, error, options) => seat.port.refused(value, error, options),
   listen(heard) {
     seat.heard = heard
     seat.waiting.splice(0).forEach(heard)

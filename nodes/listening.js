@@ -1,6 +1,7 @@
 'use strict'
 const { PlcError } = require('../lib/index.js')
 const { withCode } = require('./faults')
+const { byOf } = require('./by')
 const { LISTENERS } = require('./listening-rules')
 const { openSession } = require('./session')
 const { onStarted } = require('./started')
@@ -16,11 +17,17 @@ const guard = (msg, { settings: { access, acceptRetained }, deviceNode: { label 
   return retained && !acceptRetained ? new PlcError('RETAINED_REFUSED', { item: label }) : null
 }
 
+const payloadOf = msg => (Object.hasOwn(msg, 'payload') ? msg.payload : undefined)
+
 const attempt = async (session, msg) => {
+  const by = byOf(session.node, msg)
   const refused = guard(msg, session)
-  if (refused) return refusal(refused)
+  if (refused) {
+    session.device.refused(payloadOf(msg), refused, { by })
+    return refusal(refused)
+  }
   session.display.update({ phase: 'sending' })
-  const write = await session.device.send(Object.hasOwn(msg, 'payload') ? msg.payload : undefined)
+  const write = await session.device.send(payloadOf(msg), { by })
   return { ...write, ms: Math.round(write.ms) }
 }
 
@@ -103,7 +110,10 @@ const openListener = (RED, node, { type, config }) => {
     }
   })
   node.on('input', (msg, send, done) => {
-    if (session.fault) return done(session.fault)
+    if (session.fault) {
+      session.device?.refused(payloadOf(msg), session.fault, { by: byOf(node, msg) })
+      return done(session.fault)
+    }
     sendOff(msg, send).then(() => done(), done)
   })
 }

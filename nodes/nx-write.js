@@ -1,6 +1,6 @@
 'use strict'
 const { openSession } = require('./session')
-const { startWriting } = require('./writing')
+const { refuseWrite, startWriting } = require('./writing')
 
 module.exports = function (RED) {
   /** @this {any} */
@@ -16,7 +16,10 @@ module.exports = function (RED) {
       }
     })
     this.on('input', (msg, send, done) => {
-      if (session.fault) return done(session.fault)
+      if (session.fault) {
+        refuseWrite(session, msg, session.fault)
+        return done(session.fault)
+      }
       write(msg, send).then(() => done(), done)
     })
   }

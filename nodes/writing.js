@@ -1,5 +1,6 @@
 'use strict'
 const { PlcError, entriesOf } = require('../lib/index.js')
+const { byOf } = require('./by')
 const { withCode } = require('./faults')
 
 /** What every node that writes has in common: from a message to values, and from the outcome to an output or an error. */
@@ -30,16 +31,18 @@ const createWriter = (session, { output, check }) => {
   const { target, verify, coalesce } = settings
 
   const attempt = async msg => {
+    const by = byOf(session.node, msg)
     let entries = []
     try {
       check(msg)
       entries = entriesOf(msg, { target })
       if (!settings.acceptRetained) checkRetained(msg, entries)
     } catch (/** @type {any} */ error) {
+      device.refused(entries, error, { by })
       return { entries, write: refusal(error) }
     }
     display.update({ phase: 'writing' })
-    const write = await device.write(entries, { fixed: target !== '', verify, coalesce })
+    const write = await device.write(entries, { fixed: target !== '', verify, coalesce, by })
     return { entries, write: { ...write, ms: Math.round(write.ms) } }
   }
 
@@ -58,6 +61,20 @@ const createWriter = (session, { output, check }) => {
 }
 
 /**
+ * Of a node that cannot write at all: each message is refused with the same error, and told.
+ * @param {any} session @param {any} msg @param {any} fault
+ */
+const refuseWrite = ({ node, device, settings }, msg, fault) => {
+  let entries = []
+  try {
+    entries = entriesOf(msg, { target: settings.target })
+  } catch {
+    // the node's own fault comes first
+  }
+  device?.refused(entries, fault, { by: byOf(node, msg) })
+}
+
+/**
  * @param {any} session of {@link import('./session').openSession}; settings as those of nx-write
  * @param {{ output?: number, check?: (msg: any) => void }} [options] output: of what is confirmed, counted from 0; what is not goes to the next
  *   one; check: throws for a message that is not meant to write
@@ -72,4 +89,4 @@ const startWriting = (session, { output = 0, check = () => {} } = {}) => {
   return createWriter(session, { output, check })
 }
 
-module.exports = { startWriting }
+module.exports = { refuseWrite, startWriting }

@@ -326,6 +326,14 @@ var nxlineSerialPlc = (() => {
           "a retained MQTT message was not written to {item}",
           "Publish set values without retain, or accept retained messages in the node."
         ],
+        STEP_TOO_LARGE: [
+          "{item} was not written: it is {now} now, and {value} is a step of more than {most}",
+          "Go there in smaller steps, or allow a larger step in the tag table."
+        ],
+        WRITE_TOO_SOON: [
+          "{item} was not written: it may be written again in {wait} ms",
+          "Write less often, let the node write only the latest value, or shorten the write interval of the device."
+        ],
         SENDING_OFF: ["{node} sent nothing: it only receives", 'Set Access to "receive and send" in the node.'],
         FUNCTION_REFUSED: [
           "the function {function} is never sent",
@@ -552,7 +560,8 @@ var nxlineSerialPlc = (() => {
       };
       var REFUSAL = /^(PLC|MODBUS|C24)_/;
       var isRefusal = (error) => typeof error?.code === "string" && REFUSAL.test(error.code);
-      module.exports = { CODES, PlcError, isRefusal };
+      var causeOf = ({ message, remedy }) => message.endsWith(`. ${remedy}`) ? message.slice(0, -remedy.length - 2) : message;
+      module.exports = { CODES, PlcError, causeOf, isRefusal };
     }
   });
 
@@ -1168,7 +1177,7 @@ var nxlineSerialPlc = (() => {
       var { parseType } = require_types();
       var FIELDS = Object.freeze([
         ...["name", "label", "address", "type", "wordOrder", "byteOrder", "scale", "offset", "unit", "deadband"],
-        ...["writable", "min", "max"]
+        ...["writable", "min", "max", "maxStep"]
       ]);
       var NAME = /^[A-Za-z_]\w*$/;
       var RESERVED = new Set(Object.getOwnPropertyNames(Object.prototype).concat("prototype"));
@@ -1219,17 +1228,20 @@ var nxlineSerialPlc = (() => {
           deadband: numberOf(row, "deadband", { name, fallback: 0 }),
           writable: booleanOf(row, "writable", name),
           min: numberOf(row, "min", { name, fallback: null }),
-          max: numberOf(row, "max", { name, fallback: null })
+          max: numberOf(row, "max", { name, fallback: null }),
+          maxStep: numberOf(row, "maxStep", { name, fallback: null })
         };
       };
       var checkNumbers = (tag, type) => {
-        const { name, scale, offset, deadband, min, max } = tag;
+        const { name, scale, offset, deadband, min, max, maxStep } = tag;
         if (scale === 0) throw bad(name, "scale is 0");
         if (deadband < 0) throw bad(name, "deadband is negative");
         if (min !== null && max !== null && min > max) throw bad(name, `min ${min} is larger than max ${max}`);
+        if (maxStep !== null && maxStep <= 0) throw bad(name, `maxStep is ${maxStep}; leave it empty to allow any step`);
         if (type.numeric) return;
         if (scale !== 1 || offset !== 0) throw bad(name, `${type.name} cannot be scaled`);
         if (min !== null || max !== null) throw bad(name, `${type.name} has no min and max`);
+        if (maxStep !== null) throw bad(name, `${type.name} has no maxStep`);
       };
       var checkName = (tag, item, notation) => {
         const other = attempt(() => notation.parse(tag.name));
@@ -1963,7 +1975,7 @@ var nxlineSerialPlc = (() => {
       function masterIdList(value, { stations = [] } = {}) {
         if (value === void 0 || value === null || value === "") return DEFAULT_IDS;
         const given = Array.isArray(value) ? value : typeof value === "string" ? value.split(",").flatMap(expand) : [value];
-        if (given.length < 1 || given.length > LAST + 1) throw bad(value, "give 1 to 63 numbers");
+        if (given.length < 1 || given.length > LAST + 1) throw bad(value, "give 1 to 255 numbers");
         const ids = [...new Set(given)];
         for (const id of ids) checkId(id, stations);
         return Object.freeze(ids);
@@ -2163,8 +2175,7 @@ var nxlineSerialPlc = (() => {
         readMixed({ addresses }, row, limits) {
           const list = listOf(addresses, row, limits);
           list.forEach(checkPlace);
-          const bytes = list.reduce((sum, { kind }) => sum + (kind === "bit" ? 1 : 2), 0);
-          checkBytes(Math.max(bytes, list.length * 2), limits);
+          checkBytes(list.length * 2, limits);
         },
         writeMixed({ writes }, row, limits) {
           const list = listOf(writes, row, limits);
@@ -2641,6 +2652,7 @@ var nxlineSerialPlc = (() => {
           access: choice("access", given.access, ["read", "write"]),
           ranges: readRanges(given.writableRanges, notation),
           deadline: wholeNumber("deadline", given.deadline, { fallback: 0, least: 0, most: 36e5 }),
+          writeInterval: wholeNumber("writeInterval", given.writeInterval, { fallback: 0, least: 0, most: 36e5 }),
           notation,
           limits,
           reasons: REASONS,
@@ -3035,7 +3047,7 @@ var nxlineSerialPlc = (() => {
             throw new PlcError("BAD_TAG", { name: "table", reason: `the column ${needed} is missing` });
         }
         const decimal = (value) => separator === "," ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*)$/, "$1.$2");
-        const numeric = /* @__PURE__ */ new Set(["scale", "offset", "deadband", "min", "max"]);
+        const numeric = /* @__PURE__ */ new Set(["scale", "offset", "deadband", "min", "max", "maxStep"]);
         return rows.map((cells) => {
           const row = {};
           columns.forEach((field, index) => {

@@ -4,6 +4,7 @@ const { encodeFrame } = require('../codec/melsec/bidirectional')
 const { bytesToValue, valueToBytes } = require('../codec/melsec/convert')
 const { encodeMessage } = require('../codec/melsec/message')
 const { realClock } = require('../line')
+const { createAudit } = require('./audit')
 const { readSettings } = require('./c24-settings')
 const { C24Talk, outcomeOf } = require('./c24-talk')
 
@@ -22,6 +23,7 @@ class C24Port {
   #settings
   #heard
   #talk
+  #audit
   #listeners = new Set()
   /** @type {any[] | null} */
   #early = []
@@ -35,6 +37,7 @@ class C24Port {
     this.#lease = lease
     this.#clock = clock
     this.#settings = settings
+    this.#audit = createAudit({ line: lease.line, device: settings.name })
     this.#talk = settings.bidirectional ? new C24Talk({ lease, clock, settings, counts: this.#counts }) : null
     this.#heard = lease.listen(settings.framing, (message, { at }) => this.#take(message, at), settings.use)
   }
@@ -122,17 +125,32 @@ class C24Port {
   /**
    * Sends one message, after those of earlier calls.
    * @param {unknown} value by the format: text or a number; an array of bytes; an array of words or one word. A Buffer as it is.
-   * @param {{ deadline?: number }} [options] ms that it may wait for its turn; 0: no limit
+   * @param {{ deadline?: number, by?: import('./audit').By }} [options] deadline: ms that it may wait for its turn, 0: no limit; by: who asked, for the
+   *   event `audit`
    * @returns {Promise<Outcome>} never rejects
    */
-  async send(value, { deadline = this.#settings.deadline } = {}) {
+  async send(value, { deadline = this.#settings.deadline, by } = {}) {
     const start = this.#clock.now()
-    const outcome = await this.#outcome(value, deadline)
+    const since = this.#clock.wall()
+    const { error, ...outcome } = await this.#outcome(value, deadline)
     this.#counts[outcome.outcome]++
-    return { ...outcome, ms: this.#clock.now() - start }
+    const whole = { ...outcome, ms: this.#clock.now() - start }
+    this.#audit.message(whole, { value, since, by, error })
+    return whole
   }
 
-  /** @returns {Promise<Omit<Outcome, 'ms'>>} */
+  /**
+   * Tells of a message that its owner does not let go out: the event `audit`, nothing else.
+   * @param {unknown} value
+   * @param {any} error why
+   * @param {{ by?: import('./audit').By }} [options]
+   */
+  refused(value, error, { by } = {}) {
+    const outcome = { outcome: 'refused', attempts: 0, bytes: 0, ms: 0 }
+    this.#audit.message(outcome, { value, since: this.#clock.wall(), by, error })
+  }
+
+  /** @returns {Promise<Omit<Outcome, 'ms'> & { error?: any }>} */
   async #outcome(value, deadline) {
     const { line } = this.#lease
     const nothing = { attempts: 0, bytes: 0 }
@@ -160,7 +178,7 @@ class C24Port {
     return bidirectional ? encodeFrame(body, format) : encodeMessage(body, format)
   }
 
-  /** What waits is settled by the line; the lease stays its owner's. Any number of times. */
+  /** What waits is settled by the line, whose lease stays its owner's. */
   close() {
     this.#closed = true
     this.#talk?.close()

@@ -34,7 +34,7 @@ const sharedOf = (line, { repeatAfter, repeatWithin }) => {
   return memory.c24
 }
 
-/** @typedef {{ outcome: 'confirmed'|'unknown'|'refused'|'failed', code?: string, text?: string, attempts: number, bytes: number }} Result */
+/** @typedef {{ outcome: 'confirmed'|'unknown'|'refused'|'failed', code?: string, text?: string, attempts: number, bytes: number, error?: any }} Result */
 
 class C24Talk {
   #lease
@@ -247,7 +247,7 @@ const wordOf = ({ kind, sent }) => {
 /** @returns {Result} */
 const outcomeOf = (outcome, error, { attempts, bytes }) => {
   const { code, message: text } = asPlcError(error)
-  return { outcome, code, text, attempts, bytes }
+  return { outcome, code, text, attempts, bytes, error }
 }
 
 module.exports = { C24Talk, outcomeOf }

@@ -11,7 +11,7 @@ class ChinoRegulator extends Device {
   /** @param {Record<string, any>} options of {@link createChinoRegulator} */
   constructor({ lease, clock, random, ...given }) {
     const settings = readSettings(given)
-    super({ settings, talk: new ModbusTalk({ lease, settings }), clock, random })
+    super({ settings, line: lease.line, talk: new ModbusTalk({ lease, settings }), clock, random })
   }
 }
 
@@ -44,6 +44,7 @@ class ChinoRegulator extends Device {
  * @param {'low'|'high'} [options.byteOrder] of strings, default high byte first: registers travel so
  * @param {'read'|'write'} [options.access] default read
  * @param {string|string[]} [options.writableRanges] `400001..400010, 001001`: what a message may write to beside writable tags
+ * @param {number} [options.writeInterval] ms between two writes of the same words or bits at least, default none
  * @param {number} [options.deadline] ms that a request may wait for its turn, default no limit
  * @param {any} [options.clock]
  * @param {() => number} [options.random] 0 to 1

@@ -25,6 +25,7 @@ const NUMBERS = Object.freeze(
     ['holdingRead', 125, 1, 125],
     ['holdingWrite', 123, 1, 123],
     ['turnaround', 100, 0, 10000],
+    ['writeInterval', 0, 0, 3600000],
     ['deadline', 0, 0, 3600000]
   ])
 )
@@ -123,7 +124,8 @@ const broadcastChecks = station => {
   if (station !== 0) return {}
   return {
     checkRead: () => refuseBroadcast('a read', 'no station answers a broadcast'),
-    checkWrite: ({ points }, { verify }) => {
+    checkWrite: ({ points, steps }, { verify }) => {
+      if (steps.length > 0) refuseBroadcast(steps[0].text, 'its largest step needs what each station holds now')
       const bit = points.find(({ through }) => through)
       if (bit) refuseBroadcast(bit.text, 'one bit of a register is written by reading the register first')
       if (verify) refuseBroadcast('a write that is read back', 'no station answers a broadcast')

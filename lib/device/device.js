@@ -26,18 +26,19 @@ class Device {
   /**
    * @param {object} options
    * @param {any} options.settings read and checked; what any protocol needs of them is in docs/architecture.md, "Device"
+   * @param {any} options.line of the lease: what is remembered about the station, and who is told what becomes of writes
    * @param {any} options.talk requests over the line: `read(request, { priority })`, `write(take, { priority })`, `counts`, `close()`
    * @param {any} [options.clock]
    * @param {() => number} [options.random] 0 to 1
    */
-  constructor({ settings, talk, clock = realClock, random = Math.random }) {
+  constructor({ settings, line, talk, clock = realClock, random = Math.random }) {
     this.#settings = settings
     this.#clock = clock
     this.#random = random
     this.#talk = talk
     this.#reader = new Reader({ talk, settings, clock })
     const parse = text => this.item(text)
-    this.#writer = new Writer({ talk, reader: this.#reader, clock, settings, parse })
+    this.#writer = new Writer({ talk, reader: this.#reader, line, clock, settings, parse })
   }
 
   get name() {
@@ -158,11 +159,24 @@ class Device {
    * @param {object} [options]
    * @param {boolean} [options.fixed] the targets were fixed by the flow's author, not by a message
    * @param {boolean} [options.verify] read back and compare; confirms also an unanswered write that reads so
-   * @param {boolean} [options.coalesce] a write of the same items that still waits is replaced (its outcome: SUPERSEDED)
+   * @param {boolean} [options.coalesce] a write of the same items that still waits is replaced (its outcome: SUPERSEDED); it waits for the
+   *   write interval
+   * @param {import('./audit').By} [options.by] who asked, for the event `audit`
    * @returns {Promise<import('./outcome').Outcome>} never rejects
    */
-  write(entries, { fixed = false, verify = false, coalesce = false } = {}) {
-    return this.#writer.write(entries, { fixed, verify, coalesce })
+  write(entries, { fixed = false, verify = false, coalesce = false, by } = {}) {
+    return this.#writer.write(entries, { fixed, verify, coalesce, by })
+  }
+
+  /**
+   * Tells of a write that its owner refuses before it gets here (a retained message): the event `audit`, nothing else.
+   * @param {{ item: any, value: any }[]} entries as far as they are known
+   * @param {any} error why
+   * @param {{ by?: import('./audit').By }} [options]
+   * @returns {import('./outcome').Outcome} refused
+   */
+  refused(entries, error, { by } = {}) {
+    return this.#writer.refused(entries, error, { by })
   }
 
   /**
@@ -206,6 +220,7 @@ class Device {
     this.#closed = true
     for (const subscription of this.#subscriptions) subscription.stop()
     this.#subscriptions.clear()
+    this.#writer.close()
     this.#talk.close()
   }
 }

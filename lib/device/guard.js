@@ -30,7 +30,7 @@ const blocksOf = ({ start, end }) => {
 const limitedBlocks = notation => {
   const blocks = new Map()
   for (const tag of notation.tags.values()) {
-    if (tag.min === null && tag.max === null) continue
+    if (tag.min === null && tag.max === null && tag.maxStep === null) continue
     const item = parseExpression(tag.address, notation, { tag })
     for (const span of spansOf(item)) {
       const limited = { item, ...span }
@@ -72,19 +72,33 @@ const checkInside = (item, raw, limited) => {
   throw new PlcError('VALUE_OUT_OF_RANGE', { item: `${item.text} (tag ${tag.name})`, value, ...limits })
 }
 
-/** A value that stands on limited bits must be that same value, inside the limits. */
+/** What must be read before: where the limited value stands. @returns {import('./step').Step & { at: number }} */
+const stepOf = (item, { raw, at }, { item: limited, start, end }) => {
+  const { kind, tag } = limited
+  const size = kind === 'word' ? BLOCK : 1
+  const point = { kind, address: start / size, count: (end - start) / size, text: tag.name }
+  return { item: limited, point, raw, text: item.text, at }
+}
+
+/** A value that stands on limited bits must be that same value, inside the limits. @returns {Set<any>} the limited values */
 const checkLimits = (item, { span, raw, blocks }) => {
+  const met = new Set()
   for (const block of blocksOf(span)) {
     for (const limited of blocks.get(block) ?? []) {
-      if (span.end <= limited.start || limited.end <= span.start) continue
+      if (met.has(limited) || span.end <= limited.start || limited.end <= span.start) continue
       if (!sameValue(item, span, limited)) {
         const { name } = limited.item.tag
         throw refuse(item, `it overlaps the tag ${name}, which has limits, in another type or width`)
       }
       checkInside(item, raw, limited.item)
+      met.add(limited)
     }
   }
+  return met
 }
+
+const stepsOf = (item, value, met) =>
+  [...met].filter(({ item: { tag } }) => tag.maxStep !== null).map(limited => stepOf(item, value, limited))
 
 /**
  * @param {any} settings of the station; `reasons`: why its areas, or bits of its words, cannot be written
@@ -108,10 +122,14 @@ const createGuard = ({ access, station, ranges, notation, reasons }) => {
      * Whether raw values may be written to an item.
      * @param {import('../tag/item').Item} item
      * @param {any[][]} values raw words (or one bit) of each of its values
+     * @returns {(import('./step').Step & { at: number })[]} whose size is to be checked before they are sent; `at`: which of the values
      * @throws {PlcError} NOT_WRITABLE, VALUE_OUT_OF_RANGE
      */
     checkValues: (item, values) =>
-      spansOf(item).forEach((span, index) => checkLimits(item, { span, raw: values[index], blocks }))
+      spansOf(item).flatMap((span, at) => {
+        const raw = values[at]
+        return stepsOf(item, { raw, at }, checkLimits(item, { span, raw, blocks }))
+      })
   }
 }
 

@@ -3,6 +3,7 @@ const { PlcError } = require('../error')
 const { nextNumber, START } = require('../codec/incon/check')
 const { BUFFER, encodeLine, inconFraming } = require('../codec/incon/message')
 const { realClock } = require('../line')
+const { createAudit } = require('./audit')
 const { asPlcError } = require('./failure')
 const { blank, choice, isOn, wholeNumber } = require('./options')
 
@@ -44,11 +45,11 @@ const emptyStats = () => ({
 
 /**
  * @param {'unknown'|'refused'|'failed'} outcome @param {any} error @param {number} [bytes] that went out
- * @returns {Outcome}
+ * @returns {Outcome & { error: any }}
  */
 const failure = (outcome, error, bytes = 0) => {
   const { code, message: text } = asPlcError(error)
-  return { outcome, code, text, attempts: bytes > 0 ? 1 : 0, ms: 0, bytes }
+  return { outcome, code, text, attempts: bytes > 0 ? 1 : 0, ms: 0, bytes, error }
 }
 
 /** One end of the link on a line. Made by {@link createInconLink}. */
@@ -57,6 +58,7 @@ class InconLink {
   #clock
   #settings
   #heard
+  #audit
   #listeners = new Set()
   #closed = false
   #stats = emptyStats()
@@ -66,6 +68,7 @@ class InconLink {
     this.#settings = readSettings(given)
     this.#lease = lease
     this.#clock = clock
+    this.#audit = createAudit({ line: lease.line, device: this.#settings.name })
     const { most, silence, encoding, checked } = this.#settings
     const framing = inconFraming({ most, silence, ascii: encoding === 'ascii', checked })
     const use = { torn: { first: TORN_END, apart: true } }
@@ -129,17 +132,32 @@ class InconLink {
   /**
    * Sends one line; lines go out in the order of the calls, each followed by the quiet time.
    * @param {string|number|Uint8Array} value text of printable characters, or bytes as they are; at most 253 (246 in the checked format)
-   * @param {{ deadline?: number }} [options] ms that it may wait for its turn; 0: no limit
+   * @param {{ deadline?: number, by?: import('./audit').By }} [options] deadline: ms that it may wait for its turn, 0: no limit; by: who asked, for the
+   *   event `audit`
    * @returns {Promise<Outcome>} never rejects
    */
-  async send(value, { deadline = this.#settings.deadline } = {}) {
+  async send(value, { deadline = this.#settings.deadline, by } = {}) {
     const start = this.#clock.now()
-    const outcome = await this.#outcome(value, deadline)
+    const since = this.#clock.wall()
+    const { error, ...outcome } = await this.#outcome(value, deadline)
     this.#stats[outcome.outcome]++
-    return { ...outcome, ms: outcome.ms || this.#clock.now() - start }
+    const whole = { ...outcome, ms: outcome.ms || this.#clock.now() - start }
+    this.#audit.message(whole, { value, since, by, error })
+    return whole
   }
 
-  /** @returns {Promise<Outcome>} */
+  /**
+   * Tells of a line that its owner does not let go out: the event `audit`, nothing else.
+   * @param {unknown} value
+   * @param {any} error why
+   * @param {{ by?: import('./audit').By }} [options]
+   */
+  refused(value, error, { by } = {}) {
+    const { error: why, ...outcome } = failure('refused', error)
+    this.#audit.message(outcome, { value, since: this.#clock.wall(), by, error: why })
+  }
+
+  /** @returns {Promise<Outcome & { error?: any }>} */
   async #outcome(value, deadline) {
     const { line } = this.#lease
     const memory = memoryOf(line)

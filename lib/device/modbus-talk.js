@@ -82,7 +82,8 @@ class ModbusTalk {
   }
 
   /**
-   * @param {() => { query: any, item: string, name?: string }} take called when its turn has come: the latest value goes out
+   * @param {() => { query: any, item: string, before?: (ask: (request: any) => Generator<any, any[], Buffer>) => Generator<any, void, Buffer> }} take
+   *   called when its turn has come: the latest value goes out; `before` comes first, in the same conversation, and may read
    * @param {{ priority: number }} options
    * @returns {Promise<true>}
    * @throws {PlcError} (rejects) MODBUS_…, WRITE_UNKNOWN, BROADCAST_UNCONFIRMED; `details.sent` of others: whether a frame that writes went out
@@ -115,7 +116,8 @@ class ModbusTalk {
     return result.values
   }
 
-  *#writing({ query: request, item }, facts) {
+  *#writing({ query: request, item, before = /** @type {any} */ (null) }, facts) {
+    if (before) yield* before(each => this.#reading(each))
     const { functions, station, broadcast } = this.#settings
     const write = writeOf(request, functions)
     // an answer that equals the query proves nothing while the adapter may hear itself

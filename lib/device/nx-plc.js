@@ -11,7 +11,7 @@ class NxPlc extends Device {
   /** @param {Record<string, any>} options of {@link createNxPlc} */
   constructor({ lease, clock, random = Math.random, ...given }) {
     const settings = readSettings(given, lease.line.times?.character ?? 0.52)
-    super({ settings, talk: new Talk({ lease, settings, random }), clock, random })
+    super({ settings, line: lease.line, talk: new Talk({ lease, settings, random }), clock, random })
   }
 }
 
@@ -36,6 +36,7 @@ class NxPlc extends Device {
  * @param {'read'|'write'} [options.access] default read
  * @param {string|string[]} [options.writableRanges] `K0..K63, M10`: what a message may write to beside writable tags
  * @param {Record<string, number>} [options.limits] per frame, see `limitsOf`
+ * @param {number} [options.writeInterval] ms between two writes of the same words or bits at least, default none
  * @param {number} [options.deadline] ms that a request may wait for its turn, default no limit
  * @param {any} [options.clock]
  * @param {() => number} [options.random] 0 to 1

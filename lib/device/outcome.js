@@ -31,7 +31,7 @@ const plain = ({ item, value }) => ({ item: item?.text ?? String(item), name: it
  * @param {any} error
  * @param {{ item: any, value: any }[]} entries
  * @param {'refused'|'failed'} outcome
- * @returns {Outcome}
+ * @returns {Outcome & { error: any }}
  */
 const unsent = (error, entries, outcome = 'refused') => {
   const { code, message: text } = asPlcError(error)
@@ -41,16 +41,19 @@ const unsent = (error, entries, outcome = 'refused') => {
     code,
     text,
     attempts: 0,
-    ms: 0
+    ms: 0,
+    error
   }
 }
 
 const UNKNOWN = new Set(['WRITE_UNKNOWN', 'BROADCAST_UNCONFIRMED'])
+/** Of guards that look when the turn has come. */
+const GUARDED = new Set(['STEP_TOO_LARGE', 'WRITE_TOO_SOON', 'NOT_A_VALUE'])
 
 /** @param {import('../error').PlcError} error @returns {Word} what a failed request means */
 const wordFor = error => {
   if (UNKNOWN.has(error.code)) return 'unknown'
-  return isRefusal(error) ? 'refused' : 'failed'
+  return isRefusal(error) || GUARDED.has(error.code) ? 'refused' : 'failed'
 }
 
 /** The worst that an item's values met. */
@@ -76,7 +79,7 @@ const partOf = (entry, own, { points, station }) => {
  * @param {{ item: any, value: any, from: number, to: number }[]} entries with the places of their points
  * @param {{ outcome: string, error?: import('../error').PlcError }[]} points
  * @param {number} station
- * @returns {Outcome}
+ * @returns {Outcome & { error: any }} error: why it is not confirmed
  */
 const outcomeOf = (entries, points, station) => {
   const items = entries.map(entry => {
@@ -85,12 +88,13 @@ const outcomeOf = (entries, points, station) => {
     const worst = part?.outcome ?? /** @type {any} */ (WORST.find(word => own.some(({ outcome }) => outcome === word)))
     const error = part?.error ?? own.find(({ outcome }) => outcome === worst)?.error
     const why = error ? { code: error.code, text: error.message } : {}
-    return { ...plain(entry), outcome: worst, ...why }
+    return { item: { ...plain(entry), outcome: worst, ...why }, error }
   })
-  const first = WORST.map(word => items.find(({ outcome }) => outcome === word)).find(Boolean)
-  const { outcome, code, text } = /** @type {any} */ (first)
   // what was not sent was not sent because of another item: that one's word stands for the whole
-  return { outcome, items, ...(code ? { code, text } : {}), attempts: 0, ms: 0 }
+  const first = /** @type {any} */ (WORST.map(word => items.find(({ item }) => item.outcome === word)).find(Boolean))
+  const { outcome, code, text } = first.item
+  const why = code ? { code, text } : {}
+  return { outcome, items: items.map(({ item }) => item), ...why, attempts: 0, ms: 0, error: first.error }
 }
 
 module.exports = { outcomeOf, unsent, wordFor }

@@ -141,4 +141,14 @@ const resultsOf = (items, readings) => {
  * @property {any[]} [elements] of a range: a result per value
  */
 
-module.exports = { MOST_POINTS, checkTotal, pointsOf, readBackOf, readBackValues, resultsOf, widthOf, writePointsOf }
+module.exports = {
+  MOST_POINTS,
+  checkTotal,
+  packed,
+  pointsOf,
+  readBackOf,
+  readBackValues,
+  resultsOf,
+  widthOf,
+  writePointsOf
+}

@@ -107,6 +107,7 @@ const readSettings = (given, character) => {
     access: choice('access', given.access, ['read', 'write']),
     ranges: readRanges(given.writableRanges, notation),
     deadline: wholeNumber('deadline', given.deadline, { fallback: 0, least: 0, most: 3600000 }),
+    writeInterval: wholeNumber('writeInterval', given.writeInterval, { fallback: 0, least: 0, most: 3600000 }),
     notation,
     limits,
     reasons: REASONS,

@@ -24,6 +24,8 @@ class Talk {
   // a repeat by RR has no ID of its own that tells late from right, so whatever disturbs the line ends it
   #forget = () => void (this.#memory.lastRead = null)
 
+  // what a write has come to is no trouble of the line
+  #disturbed = ({ event }) => void (event === 'audit' || this.#forget())
   /** @param {{ lease: any, settings: any, random: () => number }} options random: 0 to 1, for the first master ID */
   constructor({ lease, settings, random }) {
     this.#lease = lease
@@ -33,7 +35,7 @@ class Talk {
     this.#ids = masterIds({ ids, start: Math.floor(random() * ids.length), memory: this.#memory.ids })
     this.#watch = createMasterWatch({ memory: this.#memory.master, found: id => this.#tellFixed(id) })
     lease.on('state', this.#forget)
-    lease.on('event', this.#forget)
+    lease.on('event', this.#disturbed)
   }
 
   #tellFixed(id) {
@@ -62,15 +64,16 @@ class Talk {
   }
 
   /**
-   * @param {() => { query: any, item: string }} take called when its turn has come: the latest value goes out
+   * @param {() => { query: any, item: string, before?: (ask: (query: any) => Generator<any, any[], Buffer>) => Generator<any, void, Buffer> }} take
+   *   called when its turn has come: the latest value goes out; `before` comes first, in the same conversation, and may read
    * @param {{ priority: number }} options
    * @returns {Promise<true>}
    */
   async write(take, { priority }) {
     const { station, deadline } = this.#settings
     const make = () => {
-      const { query, item } = take()
-      return this.#writing(query, item)
+      const { query, item, before } = take()
+      return this.#writing(query, { item, before })
     }
     return (await this.#lease.run(make, { station, priority, deadline, label: 'write' })).values
   }
@@ -88,8 +91,17 @@ class Talk {
     return result
   }
 
-  *#writing(query, item) {
+  /** A read inside of a write. */
+  *#values(query) {
+    this.#counts.requests++
+    const result = yield* readDialog(query, this.#options())
+    this.#note(result)
+    return result.values
+  }
+
+  *#writing(query, { item, before }) {
     this.#begin()
+    if (before) yield* before(each => this.#values(each))
     const nonStandardAck = !this.#memory.openBitWrite
     if (query.ask === 'writeBits') this.#memory.openBitWrite = true
     const result = yield* writeDialog(query, { ...this.#options(), item, nonStandardAck })
@@ -137,7 +149,7 @@ class Talk {
 
   close() {
     this.#lease.off('state', this.#forget)
-    this.#lease.off('event', this.#forget)
+    this.#lease.off('event', this.#disturbed)
   }
 }
 

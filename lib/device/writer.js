@@ -1,21 +1,21 @@
 'use strict'
-const { PlcError, isRefusal } = require('../error')
-const { PRIORITY } = require('../line')
+const { PlcError } = require('../error')
 const { encodeValue } = require('../tag/value')
+const { createAudit } = require('./audit')
+const { Delivery } = require('./delivery')
 const { createGuard } = require('./guard')
-const { outcomeOf, unsent, wordFor } = require('./outcome')
-const { asPlcError } = require('./failure')
+const { Intervals, writtenOf } = require('./interval')
+const { unsent } = require('./outcome')
 const { MOST_POINTS, widthOf, writePointsOf } = require('./points')
-const { verifyWritten } = require('./verify')
 
 /**
- * Writes: guarded before anything is sent, in as few frames as possible, never repeated. The first frame that is not
- * confirmed ends the write.
+ * Writes: guarded before anything is sent, in as few frames as possible, each one told to those who listen to the line.
  *
  * @typedef {object} Prepared
  * @property {any[]} entries `{ item, value, from, to }`
  * @property {any[]} points `{ kind, address, values, text }`
  * @property {any[]} requests of the plan
+ * @property {(import('./step').Step & { index: number })[]} steps whose size is checked; `index`: of the point
  */
 
 const MOST_ENTRIES = 1000
@@ -34,27 +34,30 @@ const checkPoints = entries => {
   if (count > MOST_POINTS) throw new PlcError('TOO_MANY', { count, unit: 'values to write', most: MOST_POINTS })
 }
 
-/** A broadcast is never confirmed: what comes after it goes out all the same. */
-const goesOn = error => !error || error.code === 'BROADCAST_UNCONFIRMED'
+/** What was asked for, as far as it can be told. */
+const given = entries => {
+  const list = Array.isArray(entries) ? entries.slice(0, MOST_ENTRIES) : []
+  return list.map(entry => ({ item: entry?.item, value: entry?.value }))
+}
 
 class Writer {
-  #talk
-  #reader
   #clock
   #settings
   #parse
   #guard
-  /** Writes of the latest value that still wait for their turn: key -> job. */
-  #waiting = new Map()
+  #audit
+  #delivery
 
-  /** @param {{ talk: any, reader: any, clock: any, settings: any, parse: (text: any) => any }} options */
-  constructor({ talk, reader, clock, settings, parse }) {
-    this.#talk = talk
-    this.#reader = reader
+  /** @param {{ talk: any, reader: any, line: any, clock: any, settings: any, parse: (text: any) => any }} options */
+  constructor({ talk, reader, line, clock, settings, parse }) {
+    const { name, station, writeInterval } = settings
     this.#clock = clock
     this.#settings = settings
     this.#parse = parse
     this.#guard = createGuard(settings)
+    this.#audit = createAudit({ line, device: name, station })
+    const intervals = new Intervals({ written: writtenOf(line.memory(station)), interval: writeInterval, clock })
+    this.#delivery = new Delivery({ talk, reader, clock, settings, intervals })
   }
 
   /** @param {import('../tag/item').Item} item @param {{ fixed?: boolean }} options @throws {PlcError} READ_ONLY, NOT_WRITABLE */
@@ -64,26 +67,41 @@ class Writer {
 
   /**
    * @param {{ item: string, value: any, fixed?: boolean }[]} entries
-   * @param {{ fixed?: boolean, verify?: boolean, coalesce?: boolean }} options
+   * @param {{ fixed?: boolean, verify?: boolean, coalesce?: boolean, by?: import('./audit').By }} options
    * @returns {Promise<import('./outcome').Outcome>} never rejects
    */
-  async write(entries, options) {
+  async write(entries, { by, ...options }) {
     const start = this.#clock.now()
-    const outcome = await this.#outcome(entries, options)
-    return { ...outcome, ms: this.#clock.now() - start }
+    const since = this.#clock.wall()
+    const { error, ...outcome } = await this.#outcome(entries, options)
+    const whole = { ...outcome, ms: this.#clock.now() - start }
+    this.#audit.write(whole, { since, by, error })
+    return whole
+  }
+
+  /**
+   * @param {{ item: any, value: any }[]} entries
+   * @param {any} why
+   * @param {{ by?: import('./audit').By }} options
+   * @returns {import('./outcome').Outcome}
+   */
+  refused(entries, why, { by }) {
+    const { item, value } = why?.details ?? {}
+    // of a message that cannot be read the error may know what it was about
+    const known = entries.length === 0 && item !== undefined ? [{ item, value }] : given(entries)
+    const { error, ...outcome } = unsent(why, known)
+    this.#audit.write(outcome, { since: this.#clock.wall(), by, error })
+    return outcome
   }
 
   #outcome(entries, options) {
     try {
       const prepared = this.#prepare(entries, options)
       this.#settings.checkWrite?.(prepared, options)
-      return options.coalesce ? this.#latest(prepared, options) : this.#carryOut({ prepared }, options)
+      if (!options.coalesce) this.#delivery.checkInterval(prepared.points)
+      return this.#delivery.write(prepared, options)
     } catch (error) {
-      const given = Array.isArray(entries) ? entries.slice(0, MOST_ENTRIES) : []
-      return unsent(
-        error,
-        given.map(entry => ({ item: entry?.item, value: entry?.value }))
-      )
+      return unsent(error, given(entries))
     }
   }
 
@@ -92,13 +110,15 @@ class Writer {
     checkEntries(entries)
     const parsed = entries.map(entry => this.#entry(entry, fixed))
     const points = []
+    const steps = []
     checkPoints(parsed)
     for (const entry of parsed) {
       entry.from = points.length
       points.push(...writePointsOf(entry))
       entry.to = points.length
+      steps.push(...entry.steps.map(({ at, ...step }) => ({ ...step, index: entry.from + at })))
     }
-    return { entries: parsed, points, requests: this.#settings.plan.writes(points) }
+    return { entries: parsed, points, steps, requests: this.#settings.plan.writes(points) }
   }
 
   #entry(entry, fixed) {
@@ -108,80 +128,13 @@ class Writer {
     // the flow's author may fix single targets of a message, too
     this.#guard.checkItem(item, { fixed: fixed || entry.fixed === true })
     const values = encodeValue(item, entry.value)
-    this.#guard.checkValues(item, values)
-    return { item, value: entry.value, values, from: 0, to: 0 }
+    const steps = this.#guard.checkValues(item, values)
+    return { item, value: entry.value, values, steps, from: 0, to: 0 }
   }
 
-  /** Of several writes of the same items that wait, only the latest goes out, in the place of the first. */
-  #latest(prepared, options) {
-    const key = JSON.stringify([prepared.entries.map(({ item }) => item.text), Boolean(options.verify)])
-    const job = this.#waiting.get(key)
-    if (!job) return this.#firstOf(key, prepared, options)
-    const { entries } = job.prepared
-    job.settle(unsent(new PlcError('SUPERSEDED', { item: entries[0].item.text }), entries))
-    job.prepared = prepared
-    return new Promise(resolve => (job.settle = resolve))
-  }
-
-  #firstOf(key, prepared, options) {
-    const job = { prepared, settle: /** @type {(outcome: any) => void} */ (() => {}), begin: () => {} }
-    job.begin = () => void (this.#waiting.get(key) === job && this.#waiting.delete(key))
-    this.#waiting.set(key, job)
-    const promise = new Promise(resolve => (job.settle = resolve))
-    this.#carryOut(job, options).then(outcome => {
-      job.begin()
-      job.settle(outcome)
-    })
-    return promise
-  }
-
-  /** @param {any} job its `prepared` may be replaced until its first frame goes out */
-  async #carryOut(job, { verify }) {
-    const done = []
-    let attempts = 0
-    let error = null
-    for (let next = 0; next < job.prepared.requests.length && goesOn(error); next++) {
-      const take = () => {
-        job.begin?.()
-        const request = job.prepared.requests[next]
-        attempts++
-        return { query: request, item: job.prepared.points[request.points[0]].text }
-      }
-      error = await this.#send(take)
-      done.push(error ? { outcome: wordFor(error), error } : { outcome: 'confirmed' })
-    }
-    const { entries, points, requests } = job.prepared
-    const fates = points.map(() => ({ outcome: 'notSent' }))
-    requests.forEach((request, index) => {
-      if (done[index]) for (const point of request.points) fates[point] = done[index]
-    })
-    if (verify) await verifyWritten({ reader: this.#reader, station: this.#settings.station, points, fates })
-    return { ...outcomeOf(entries, fates, this.#settings.station), attempts }
-  }
-
-  /** @returns {Promise<PlcError|null>} */
-  async #send(take) {
-    let item = ''
-    try {
-      await this.#talk.write(
-        () => {
-          const taken = take()
-          item = taken.item
-          return taken
-        },
-        { priority: PRIORITY.WRITE }
-      )
-      return null
-    } catch (caught) {
-      return this.#meaning(asPlcError(caught, this.#settings.station), item)
-    }
-  }
-
-  /** What the line broke off after a byte of it went out may have been carried out. */
-  #meaning(error, item) {
-    const { code, details } = error
-    if (code === 'WRITE_UNKNOWN' || isRefusal(error) || details.sent !== true) return error
-    return new PlcError('WRITE_UNKNOWN', { station: this.#settings.station, item, reason: code, cause: error })
+  /** What waits for the write interval fails. */
+  close() {
+    this.#delivery.close()
   }
 }
 

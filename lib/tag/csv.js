@@ -54,7 +54,7 @@ const tagsFromCsv = text => {
       throw new PlcError('BAD_TAG', { name: 'table', reason: `the column ${needed} is missing` })
   }
   const decimal = value => (separator === ',' ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*)$/, '$1.$2'))
-  const numeric = new Set(['scale', 'offset', 'deadband', 'min', 'max'])
+  const numeric = new Set(['scale', 'offset', 'deadband', 'min', 'max', 'maxStep'])
   return rows.map(cells => {
     /** @type {Record<string, string>} */
     const row = {}

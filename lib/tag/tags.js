@@ -20,11 +20,12 @@ const { parseType } = require('./types')
  * @property {boolean} writable
  * @property {number|null} min engineering value
  * @property {number|null} max engineering value
+ * @property {number|null} maxStep engineering units: what is written differs by so much at most from what the station holds
  */
 
 const FIELDS = Object.freeze([
   ...['name', 'label', 'address', 'type', 'wordOrder', 'byteOrder', 'scale', 'offset', 'unit', 'deadband'],
-  ...['writable', 'min', 'max']
+  ...['writable', 'min', 'max', 'maxStep']
 ])
 const NAME = /^[A-Za-z_]\w*$/
 // keys that mean something else on every object: a payload { constructor: 1 } must not be read as a tag
@@ -82,18 +83,21 @@ const readRow = (row, place) => {
     deadband: numberOf(row, 'deadband', { name, fallback: 0 }),
     writable: booleanOf(row, 'writable', name),
     min: numberOf(row, 'min', { name, fallback: null }),
-    max: numberOf(row, 'max', { name, fallback: null })
+    max: numberOf(row, 'max', { name, fallback: null }),
+    maxStep: numberOf(row, 'maxStep', { name, fallback: null })
   }
 }
 
 const checkNumbers = (tag, type) => {
-  const { name, scale, offset, deadband, min, max } = tag
+  const { name, scale, offset, deadband, min, max, maxStep } = tag
   if (scale === 0) throw bad(name, 'scale is 0')
   if (deadband < 0) throw bad(name, 'deadband is negative')
   if (min !== null && max !== null && min > max) throw bad(name, `min ${min} is larger than max ${max}`)
+  if (maxStep !== null && maxStep <= 0) throw bad(name, `maxStep is ${maxStep}; leave it empty to allow any step`)
   if (type.numeric) return
   if (scale !== 1 || offset !== 0) throw bad(name, `${type.name} cannot be scaled`)
   if (min !== null || max !== null) throw bad(name, `${type.name} has no min and max`)
+  if (maxStep !== null) throw bad(name, `${type.name} has no maxStep`)
 }
 
 /** A name that is also an address would mean two things. */

@@ -17,7 +17,7 @@ describe('tag table', () => {
       { ...tag },
       {
         ...{ name: 'temp', label: '', address: 'K0', type: '', wordOrder: '', byteOrder: '', scale: 0.1, offset: 0 },
-        ...{ unit: '', deadband: 0, writable: true, min: null, max: 80 }
+        ...{ unit: '', deadband: 0, writable: true, min: null, max: 80, maxStep: null }
       }
     )
   })
@@ -51,6 +51,11 @@ describe('tag table', () => {
     [[{ name: 'a', address: 'M0', deadband: -1 }], /deadband/],
     [[{ name: 'a', address: 'M0.1', scale: 2 }], /cannot be scaled/],
     [[{ name: 'a', address: 'M0.1', max: 1 }], /no min and max/],
+    [[{ name: 'a', address: 'M0.1', maxStep: 1 }], /no maxStep/],
+    [[{ name: 'a', address: 'M0:string[4]', maxStep: 1 }], /no maxStep/],
+    [[{ name: 'a', address: 'M0', maxStep: 0 }], /maxStep is 0; leave it empty/],
+    [[{ name: 'a', address: 'M0', maxStep: '-2' }], /maxStep is -2/],
+    [[{ name: 'a', address: 'M0', maxStep: 'x' }], /maxStep is "x", not a number/],
     [[{ name: 'a', address: 'M0', wordOrder: 'big' }], /wordOrder/],
     [[{ name: 'a', address: 'M0', writable: 'maybe' }], /writable/],
     [[{ name: 'K5', address: 'M0' }], /its name is the address K5/]
@@ -86,8 +91,8 @@ describe('tag table as CSV', () => {
   })
 
   it('reads semicolons with decimal commas, and tabs', () => {
-    const [tag] = tagsFromCsv('name;address;scale;min;label\na;K0;0,1;-1,5;1,5 bar\n')
-    assert.deepEqual(tag, { name: 'a', address: 'K0', scale: '0.1', min: '-1.5', label: '1,5 bar' })
+    const [tag] = tagsFromCsv('name;address;scale;min;MaxStep;label\na;K0;0,1;-1,5;2,5;1,5 bar\n')
+    assert.deepEqual(tag, { name: 'a', address: 'K0', scale: '0.1', min: '-1.5', maxStep: '2.5', label: '1,5 bar' })
     assert.deepEqual(tagsFromCsv('name\taddress\na\tK0'), [{ name: 'a', address: 'K0' }])
   })
 
@@ -100,7 +105,8 @@ describe('tag table as CSV', () => {
 
   it('comes back as it went out', () => {
     const label = fc.string({ unit: fc.constantFrom('a', '"', ',', ';', '\t', '\n', '\r\n', ' ', '온', "'", '\\') })
-    const row = fc.record({ label, scale: fc.double({ min: 0.001, max: 1000, noNaN: true }), writable: fc.boolean() })
+    const scale = fc.double({ min: 0.001, max: 1000, noNaN: true })
+    const row = fc.record({ label, scale, writable: fc.boolean(), maxStep: fc.option(scale) })
     fc.assert(
       fc.property(fc.array(row, { maxLength: 8 }), fc.constantFrom(',', ';', '\t'), (rows, separator) => {
         const tags = [...read(rows.map((each, at) => ({ ...each, name: `t${at}`, address: `K${at}` }))).values()]

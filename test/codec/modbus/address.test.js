@@ -4,7 +4,6 @@ const fc = require('fast-check')
 const { describeAddress, formatAddress, parseAddress, placeOf, TABLES } = require('../../../lib/codec/modbus/address')
 
 const ZERO = { addressMode: '0-base' }
-const code = expected => error => error.code === expected
 const told = (expected, pattern) => error => error.code === expected && pattern.test(error.message)
 
 describe('MODBUS addresses', () => {
@@ -137,6 +136,65 @@ describe('MODBUS addresses', () => {
     })
   }
 
+  it('the reason is also there for programs: why, and with what', () => {
+    const why = {
+      '': { why: 'empty' },
+      '400009..400001': { why: 'backwards' },
+      M0: { why: 'form' },
+      200001: { why: 'firstDigit', digit: '2' },
+      4000010: { why: 'digits', digits: 7 },
+      4001: { why: 'zeroLost', digits: 4, padded: '004001' },
+      '001001.00': { why: 'bitOfBit' },
+      401001.1: { why: 'bitDigits' }
+    }
+    for (const [text, details] of Object.entries(why)) {
+      assert.throws(
+        () => parseAddress(text),
+        error => {
+          const { address, reason, notation, ...more } = error.details
+          assert.deepEqual([more, notation, address], [details, 'modbus', text])
+          return reason.length > 0
+        }
+      )
+    }
+    assert.throws(() => parseAddress(/** @type {any} */ (null)), {
+      details: { address: '', reason: 'it is not text', notation: 'modbus' }
+    })
+    assert.throws(
+      () => parseAddress('400000'),
+      error => error.details.notation === 'modbus'
+    )
+  })
+
+  it('the two ends of a text: blanks, length, what stands before or behind', () => {
+    assert.equal(parseAddress(`${' '.repeat(60)}hr5  `).text, 'hr5')
+    assert.equal(parseAddress(`hr${'0'.repeat(61)}5`).text, 'hr5')
+    assert.throws(
+      () => parseAddress(`hr${'0'.repeat(62)}5`),
+      told('BAD_ADDRESS', /^"hr0{18}…" is not an address: it has more than 64/)
+    )
+    assert.equal(parseAddress('hr1 .. hr2').count, 2)
+    for (const text of ['xhr5', 'hr5x', 'hr5.01x']) assert.throws(() => parseAddress(text), told('BAD_ADDRESS', /like/))
+    assert.throws(
+      () => parseAddress('401001.123'),
+      error => !/could be/.test(error.message)
+    )
+    assert.throws(
+      () => parseAddress('co0..co4096'),
+      error => error.details.unit === 'bits'
+    )
+    assert.throws(
+      () => parseAddress('hr0..hr4096'),
+      error => error.details.unit === 'words'
+    )
+    assert.equal(parseAddress('hr5').certainty, 'certain')
+  })
+
+  it('without a style an address is written as on the panel, from 1 on', () => {
+    assert.equal(formatAddress({ kind: 'word', address: 107 }), '400108')
+    assert.equal(formatAddress({ kind: 'bit', address: 0x200000 }), '000001')
+  })
+
   it('formatAddress and parseAddress are inverse to each other', () => {
     const place = fc.oneof(
       fc.record({ kind: fc.constant('word'), address: fc.nat(0x1ffff) }),
@@ -164,7 +222,8 @@ describe('MODBUS addresses', () => {
       ['bit', 0x220000],
       ['word', undefined]
     ]) {
-      assert.throws(() => placeOf(kind, address), code('BAD_ADDRESS'))
+      const reason = `no ${kind} has this absolute address`
+      assert.throws(() => placeOf(kind, address), { details: { address: String(address), reason, notation: 'modbus' } })
     }
   })
 

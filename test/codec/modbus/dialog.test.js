@@ -360,6 +360,12 @@ describe('MODBUS conversation: an adapter that may hear itself', () => {
     )
   })
 
+  it('a bit of a register needs none: its word was read just before', () => {
+    const bits = { base: 107, mask: 1, value: 1 }
+    const got = setBits([rtu('11 03 02 00 00'), rtu('11 06 00 6B 00 01')], { probe: true }, bits, true)
+    assert.equal(got.steps.length, 2)
+  })
+
   it('any answer will do, an exception too', () => {
     assert.equal(write([exception(1, 1), rtu('11 05 00 AC FF 00')], { probe: true }, [five]).result.values, true)
   })
@@ -413,6 +419,18 @@ describe('MODBUS conversation: broadcast', () => {
     refused(() => writeDialog({ frames: [WRITE] }, { station: 0 }).next(), 'BROADCAST_REFUSED')
   })
 
+  it('refused also where another makes the bytes, with the reason', () => {
+    const exchange = () => assert.fail('it was asked')
+    const begin = dialog => () => dialog.next()
+    const bits = { base: 1, mask: 1, value: 1 }
+    const says = (dialog, what, reason) =>
+      assert.throws(begin(dialog), { code: 'BROADCAST_REFUSED', details: { what, reason } })
+    says(readDialog(WORDS, { station: 0, broadcast: {}, exchange }), 'a read', 'no station may answer it')
+    const why = 'the register would have to be read first'
+    says(writeDialog({ bits }, { ...options, exchange }), 'a bit of a register', why)
+    says(writeDialog({ frames: [WRITE] }, { station: 0, exchange }), 'a write', 'it is not allowed here')
+  })
+
   it('one that went out cannot be taken back', () => {
     const dialog = writeDialog({ frames: [WRITE, WRITE] }, options)
     dialog.next()
@@ -434,7 +452,8 @@ describe('MODBUS conversation: what a line must not do', () => {
 
   it('bytes that are no ASCII frame are no answer', () => {
     const dialog = begun(readDialog(WORDS, { station: STATION, protocol: 'ascii', attempts: 1 }))
-    assert.throws(() => dialog.next(Buffer.from(':1103\r\n')), { code: 'BAD_ANSWER' })
+    const details = { station: STATION, reason: 'it is no frame' }
+    assert.throws(() => dialog.next(Buffer.from(':1103\r\n')), { code: 'BAD_ANSWER', details })
   })
 
   it('a fault of the program is passed on; of a write that went out it makes the outcome unknown', () => {
@@ -446,6 +465,15 @@ describe('MODBUS conversation: what a line must not do', () => {
 })
 
 describe('MODBUS conversation: refused before anything is sent', () => {
+  it('with the reason', () => {
+    const says = (dialog, details) => assert.throws(() => dialog.next(), { details })
+    const reason = 'it must be 1 to 247, or 0 for a broadcast'
+    says(readDialog(WORDS, { station: 248 }), { station: 248, reason })
+    says(readDialog(WRITE, { station: 1 }), { function: '16 as a read' })
+    says(writeDialog({ frames: [WRITE, WORDS] }, { station: 1 }), { function: '3 as a write' })
+    says(writeDialog({ frames: [] }, { station: 1 }), { reason: 'there is no frame' })
+  })
+
   it('stations and functions', () => {
     for (const station of [1, 247]) assert.equal(readDialog(WORDS, { station }).next().value.send[0], station)
     for (const station of [-1, 248, 255, 1.5, '1', undefined]) {

@@ -444,6 +444,81 @@ describe('MODBUS match: the beginning of another answer of the station', () => {
     assert.deepEqual(match()(hex('11 01 02')), { need: 7, ours: false })
     assert.deepEqual(match()(hex('12 01')), { skip: 2 })
   })
+
+  it('its length follows from function and byte count; a count that cannot be is none', () => {
+    const cases = [
+      ['11 84', { need: 5, ours: false }],
+      ['11 06', { need: 8, ours: false }],
+      ['11 01 01', { need: 6, ours: false }],
+      ['11 01 03', { need: 8, ours: false }],
+      ['11 01 FA', { need: 255, ours: false }],
+      ['11 04 FA', { need: 255, ours: false }],
+      ['11 01 00', { skip: 3 }],
+      ['11 01 FB', { skip: 3 }],
+      ['11 04 03', { skip: 3 }],
+      ['11 07 02', { skip: 3 }]
+    ]
+    for (const [bytes, verdict] of cases) assert.deepEqual(match()(hex(bytes)), verdict, bytes)
+  })
+
+  it('of another station only a whole one counts: what else looks like one hides nothing', () => {
+    const around = (station, data) => framed('rtu', [station, 1, data.length, ...data])
+    const filled = size => [...R, ...new Array(size - R.length).fill(0)]
+    for (const station of [1, 18, 247]) {
+      assert.equal(taken(around(station, [...R])), undefined, `${station}`)
+      assert.equal(taken(around(station, filled(250))), undefined)
+      const damaged = around(station, [...R])
+      damaged[damaged.length - 1] ^= 1
+      assert.deepEqual(taken(damaged), R, `${station}, damaged`)
+      assert.deepEqual(taken(damaged.subarray(0, -1)), R, `${station}, cut`)
+    }
+    // no such station, no such count
+    for (const station of [0, 248, 255]) assert.deepEqual(taken(around(station, [...R])), R, `${station}`)
+    assert.deepEqual(taken(around(18, filled(251))), R)
+  })
+
+  it('two damaged answers in a row are two', () => {
+    const damaged = Buffer.from(R)
+    damaged[5] ^= 1
+    assert.deepEqual(match()(Buffer.concat([damaged, damaged])), { bad: 'CRC', length: R.length })
+  })
+})
+
+describe('MODBUS match: noise is no echo', () => {
+  for (const protocol of PROTOCOLS) {
+    it(`${protocol}: what differs from the request in more than a quarter hides no answer`, () => {
+      const q = framed(protocol, '11 03 00 6B 00 03')
+      const r = framed(protocol, BODY)
+      const look = match(WORDS, { protocol, sent: q })
+      for (let length = 1; length < 20; length++) {
+        for (const byte of [0xaa, 0x41]) {
+          const got = receive(look, [Buffer.concat([Buffer.alloc(length, byte), r])])
+          assert.deepEqual([got.take, got.skipped], [r, length], `${length} × ${byte}`)
+        }
+      }
+    })
+  }
+
+  // the request 11 03 06 00 00 03 begins as its answer does
+  const query = { fn: 3, base: 0x0600, count: 3 }
+  it('ASCII: up to a quarter of it may be damaged, and not one more', () => {
+    // 17 characters: four
+    const q = framed('ascii', '11 03 06 00 00 03')
+    assert.equal(q.length, 17)
+    const look = match(query, { protocol: 'ascii', sent: q })
+    for (const count of [1, 2, 3, 4, 5, 6]) {
+      const heard = Buffer.from(q)
+      for (let i = 0; i < count; i++) heard[8 + i] = heard[8 + i] === 0x39 ? 0x38 : 0x39
+      assert.deepEqual(look(heard), count <= 4 ? { skip: 17 } : { bad: 'LRC', length: 17 }, `${count}`)
+    }
+  })
+
+  it('RTU: a damaged answer that is not like the request is one', () => {
+    const answer = framed('rtu', '11 03 06 12 34 56 78 9A BC')
+    answer[6] ^= 1
+    const sent = framed('rtu', '11 03 06 00 00 03')
+    assert.deepEqual(match(query, { sent })(answer), { bad: 'CRC', length: 11 })
+  })
 })
 
 describe('MODBUS match: bounded', () => {

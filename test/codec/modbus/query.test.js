@@ -131,6 +131,56 @@ describe('MODBUS requests', () => {
     it(`refuses number ${at}: ${expected}`, () => assert.throws(() => encodeQuery(query, 1), code(expected)))
   })
 
+  it('a refusal says what it is about', () => {
+    const words = { unit: 'words', least: 1, most: 125 }
+    const cases = [
+      [{ fn: 7 }, { function: '7' }],
+      [
+        { fn: 3, base: 1, count: 0 },
+        { count: 0, reason: 'there is nothing to ask for', ...words }
+      ],
+      [
+        { fn: 3, base: 1, count: 126 },
+        { count: 126, reason: 'too many for one frame', ...words }
+      ],
+      [
+        { fn: 3, base: 1, count: 1.5 },
+        { count: 1.5, reason: 'no count', ...words }
+      ],
+      [
+        { fn: 15, base: 1, values: 1 },
+        { count: 'no', reason: 'no count', unit: 'bits', least: 1, most: 1968 }
+      ],
+      [
+        { fn: 3, base: 65536, count: 1 },
+        { address: '65536', reason: 'the numbers on the wire are 0 to 65535' }
+      ],
+      [
+        { fn: 3, base: 65535, count: 2 },
+        { address: '65535', reason: '2 words from there end after the last number 65535' }
+      ],
+      [
+        { fn: 1, base: 65535, count: 2 },
+        { address: '65535', reason: '2 bits from there end after the last number 65535' }
+      ],
+      [
+        { fn: 16, base: 7, values: [1, -1] },
+        { item: 'wire address 8', value: '-1', reason: 'a register is a whole number from 0 to 65535' }
+      ],
+      [
+        { fn: 5, base: 7, value: 1 },
+        { item: 'wire address 7', value: '1', reason: 'a coil is true or false' }
+      ]
+    ]
+    for (const [query, details] of cases) assert.throws(() => encodeQuery(query, 1), { details })
+    const one = { fn: 3, base: 1, count: 1 }
+    const reason = 'it must be 1 to 247, or 0 for a broadcast'
+    assert.throws(() => encodeQuery(one, 248), { details: { station: 248, reason } })
+    assert.throws(() => encodeQuery(one, 0), { details: { what: 'a read', reason: 'no station may answer it' } })
+    assert.throws(() => encodeQuery({ fn: 3, base: 65536, count: 1 }, 1), code('BAD_ADDRESS'))
+    assert.equal(encodeQuery(one, 247)[0], 247)
+  })
+
   it('refuses stations that do not exist', () => {
     for (const station of [-1, 248, 255, 1.5, '1', undefined]) {
       assert.throws(() => encodeQuery({ fn: 6, base: 1, value: 1 }, station), code('BAD_STATION'))
@@ -159,9 +209,13 @@ describe('MODBUS requests, as a station reads them', () => {
       '01 10 00 01 00 02 04 00 0A 01',
       '01 10 00 01 00 02 03 00 0A 01',
       '01 10 00 01 00 02 06 00 0A 01 02 00 00',
+      '01 10 00 01 00 02 06 00 0A 01 02',
+      '01 06 00',
       '01 10 00 01'
     ]
     for (const body of senseless) assert.equal(read(body).exception, 3, body)
+    assert.deepEqual(read('01 05 00 07 00 00').query, { fn: 5, base: 7, value: false })
+    assert.deepEqual(read('01 06 00 07 12 34').query, { fn: 6, base: 7, value: 0x1234 })
   })
 
   it('counts and ends are the station’s own business', () => {
@@ -199,6 +253,21 @@ describe('MODBUS answers', () => {
         code('BAD_ANSWER')
       )
     }
+  })
+
+  it('says what came, and to what', () => {
+    const read = frame => () => decodeAnswer(query, frame, { station: 17 })
+    assert.throws(read(closed([17, 3, 2, 0, 0])), {
+      details: {
+        station: 17,
+        reason: `${closed([17, 3, 2, 0, 0]).toString('hex')} does not answer ${describeQuery(query)}`
+      }
+    })
+    assert.throws(read(hex('11 03 02 00 00 00 00')), { details: { station: 17, got: '11030200000000' } })
+    assert.throws(read(closed([18, 0x83, 2])), code('BAD_ANSWER'), 'an exception of another station')
+    assert.throws(() => encodeAnswer(query, 17, true), {
+      details: { count: 0, unit: 'values', reason: 'the request asks for another number', least: 3, most: 3 }
+    })
   })
 
   it('bits that fill up the last byte mean nothing', () => {
@@ -251,6 +320,7 @@ describe('MODBUS exceptions', () => {
       assert.ok(CODES[row.code])
       assert.equal(exceptionByCode(row.code), row)
     }
+    for (const row of [...EXCEPTIONS, exceptionOf(9)]) assert.match(row.words, /^[a-z ]{9,}$/, String(row.number))
     assert.equal(exceptionByCode('MODBUS_EXCEPTION').write, 'unknown')
     assert.equal(exceptionByCode('TIMEOUT'), undefined)
     assert.equal(exceptionByCode(undefined), undefined)
@@ -267,6 +337,22 @@ describe('MODBUS functions', () => {
     assert.deepEqual(
       ['co', 'di', 'ir', 'hr'].map(table => writeFunction(table, { single: false })),
       [15, null, null, 16]
+    )
+  })
+
+  it('bits of coils and discrete inputs, words of registers', () => {
+    assert.deepEqual(
+      FUNCTIONS.filter(({ fn }) => fn !== 8).map(({ fn, unit }) => [fn, unit]),
+      [
+        [1, 'bits'],
+        [2, 'bits'],
+        [3, 'words'],
+        [4, 'words'],
+        [5, 'bits'],
+        [6, 'words'],
+        [15, 'bits'],
+        [16, 'words']
+      ]
     )
   })
 

@@ -132,7 +132,13 @@ class LineSplitter {
  */
 
 /** @param {Cut} [options] */
-const createLineSplitter = ({ most = BUFFER, silence = 200, ascii = true, checked = false, acknowledge = false } = {}) => {
+const createLineSplitter = ({
+  most = BUFFER,
+  silence = 200,
+  ascii = true,
+  checked = false,
+  acknowledge = false
+} = {}) => {
   const read = (bytes, reason) => plain(bytes, reason, { ascii })
   return new LineSplitter({ most, silence, read: acknowledge ? acknowledged : checked ? createChecker() : read })
 }

@@ -165,6 +165,13 @@ const PROPERTIES = {
     ...SENDING,
     quiet: number(50, 0, 60000),
     before: number(5, 0, 60000)
+  },
+  'plc-monitor': {
+    name: text(),
+    line: node(),
+    events: choice('all', 'all', 'faults', 'audit', 'none'),
+    interval: number(10000, 0, 86400000, { except: [1, 99], says: '0, or 100 to 86400000' }),
+    trace: flag()
   }
 }
 

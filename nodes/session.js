@@ -57,7 +57,8 @@ const DEVICES = {
   'chino-regulator': { property: 'regulator', of: 'chino-config' },
   // who listens has no configuration of a device: it sits on the line itself
   'melsec-c24': { property: 'line', of: 'plc-line' },
-  'incon-link': { property: 'line', of: 'plc-line' }
+  'incon-link': { property: 'line', of: 'plc-line' },
+  'plc-monitor': { property: 'line', of: 'plc-line' }
 }
 
 const findDevice = (RED, { type, settings, node }) => {

@@ -6,13 +6,14 @@
  * @typedef {object} State
  * @property {{ code?: string } | null} [fault] the configuration cannot be used
  * @property {{ state: string, reason?: { code: string } | null }} [line]
- * @property {'idle'|'writing'|'read'|'failed'|'written'|'listening'|'received'|'sending'|'sent'} [phase]
+ * @property {'idle'|'writing'|'read'|'failed'|'written'|'listening'|'received'|'sending'|'sent'|'watching'} [phase]
  * @property {number} [count] values of the last read
  * @property {number} [bad] how many of them are bad
  * @property {string} [code] of the last failure
  * @property {string} [outcome] of the last write
  * @property {number} [received] messages since the start
  * @property {boolean} [complete] whether the last one was
+ * @property {number} [demoted] stations of the line that are left alone because they do not answer
  */
 
 const MOST = 19
@@ -107,6 +108,13 @@ const writeStatus = ({ outcome, code }, outcomes = OUTCOMES) => {
 const receivedStatus = ({ received, complete }) =>
   complete ? show('green', 'dot', 'received', { count: received }) : show('yellow', 'ring', 'incomplete')
 
+/** Of a line that is only watched: closed means that nobody uses it. @param {State} state */
+const watchedStatus = ({ line, demoted = 0 }) => {
+  if (!line || line.state === 'closed') return show('grey', 'ring', 'unused')
+  if (line.state !== 'open') return lineStatus(line)
+  return demoted > 0 ? show('yellow', 'ring', 'stationsDemoted', { count: demoted }) : show('green', 'dot', 'open')
+}
+
 /** @type {Record<string, (state: State) => { fill: string, shape: string, key: string, values: Record<string, any> }>} */
 const PHASES = {
   writing: () => show('blue', 'ring', 'writing'),
@@ -125,6 +133,7 @@ const PHASES = {
  */
 const statusOf = state => {
   if (state.fault) return show('red', 'ring', state.fault.code === 'READ_ONLY' ? 'readOnly' : 'config')
+  if (state.phase === 'watching') return watchedStatus(state)
   if (state.line && state.line.state !== 'open') return lineStatus(state.line)
   const phase = PHASES[state.phase ?? '']
   return phase ? phase(state) : show('grey', 'ring', 'waiting')

@@ -163,6 +163,13 @@ var nxlineSerialPlc = (() => {
           ...SENDING,
           quiet: number(50, 0, 6e4),
           before: number(5, 0, 6e4)
+        },
+        "plc-monitor": {
+          name: text(),
+          line: node(),
+          events: choice("all", "all", "faults", "audit", "none"),
+          interval: number(1e4, 0, 864e5, { except: [1, 99], says: "0, or 100 to 86400000" }),
+          trace: flag()
         }
       };
       var VARIABLE = /^\$\{([^}]+)\}$/;
@@ -3796,6 +3803,25 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // scripts/editor/monitor.js
+  var require_monitor = __commonJS({
+    "scripts/editor/monitor.js"(exports, module) {
+      "use strict";
+      var { done, open } = require_check();
+      var { fillDefaults } = require_widgets();
+      var PREFIX = "node-input-";
+      var editMonitor = (node) => {
+        open(node, PREFIX);
+        fillDefaults(node, PREFIX);
+      };
+      var saveMonitor = (node) => {
+        node.outputs = $(`#${PREFIX}trace`).prop("checked") ? 3 : 2;
+        done();
+      };
+      module.exports = { editMonitor, saveMonitor };
+    }
+  });
+
   // scripts/editor/index.js
   var require_index = __commonJS({
     "scripts/editor/index.js"(exports, module) {
@@ -3807,7 +3833,8 @@ var nxlineSerialPlc = (() => {
         ...require_regulator(),
         ...require_flow(),
         editListener: require_listener().editListener,
-        saveListener: require_listener().saveListener
+        saveListener: require_listener().saveListener,
+        ...require_monitor()
       };
     }
   });

@@ -9,5 +9,6 @@ module.exports = {
   ...require('./regulator'),
   ...require('./flow'),
   editListener: require('./listener').editListener,
-  saveListener: require('./listener').saveListener
+  saveListener: require('./listener').saveListener,
+  ...require('./monitor')
 }

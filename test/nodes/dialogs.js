@@ -15,7 +15,8 @@ const TYPES = [
   'chino-config',
   'chino-regulator',
   'melsec-c24',
-  'incon-link'
+  'incon-link',
+  'plc-monitor'
 ]
 const LANGUAGES = ['en-US', 'ko']
 

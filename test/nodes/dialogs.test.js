@@ -7,6 +7,8 @@ const { build, TARGET } = require('../../scripts/build-editor')
 const { TYPES, NODES, html, loadDialogs } = require('./dialogs')
 
 const WRITERS = ['nx-write', 'chino-regulator', 'melsec-c24', 'incon-link']
+/** How many outputs a new node has, of those types whose number changes. */
+const OUTPUTS = { ...Object.fromEntries(WRITERS.map(type => [type, 1])), 'plc-monitor': 2 }
 
 describe('node dialogs', () => {
   it('resources/editor.js is what scripts/build-editor.js makes', () => {
@@ -20,7 +22,7 @@ describe('node dialogs', () => {
       for (const [name, row] of Object.entries(PROPERTIES[type])) {
         assert.equal(JSON.stringify(defaults[name].value), JSON.stringify(row.fallback), name)
       }
-      assert.equal(outputs?.value, WRITERS.includes(type) ? 1 : undefined)
+      assert.equal(outputs?.value, OUTPUTS[type])
     })
 
     it(`${type}: a field for each property, a label for each field, no foreign colours or styles`, () => {
@@ -54,10 +56,11 @@ describe('node dialogs', () => {
       ['nx-write', 2],
       ['chino-regulator', 3],
       ['melsec-c24', 3],
-      ['incon-link', 3]
+      ['incon-link', 3],
+      ['plc-monitor', 3]
     ]) {
       assert.equal(types[type].outputs, most)
-      assert.equal(types[type].defaults.outputs.value, 1)
+      assert.equal(types[type].defaults.outputs.value, OUTPUTS[type])
     }
   })
 
@@ -65,7 +68,7 @@ describe('node dialogs', () => {
     const folder = path.join(NODES, '..', 'examples')
     for (const file of fs.readdirSync(folder).filter(name => name.endsWith('.json'))) {
       for (const node of JSON.parse(fs.readFileSync(path.join(folder, file), 'utf8'))) {
-        const wanted = Object.keys(PROPERTIES[node.type] ?? {}).concat(WRITERS.includes(node.type) ? 'outputs' : [])
+        const wanted = Object.keys(PROPERTIES[node.type] ?? {}).concat(OUTPUTS[node.type] ? 'outputs' : [])
         assert.deepEqual(
           wanted.filter(name => !Object.hasOwn(node, name)),
           [],
@@ -86,9 +89,12 @@ describe('node dialogs', () => {
     assert.notEqual(types['chino-regulator'].color, types['nx-read'].color)
     assert.equal(types['melsec-c24'].paletteLabel, 'MELSEC C24')
     assert.equal(types['incon-link'].paletteLabel, 'INCON link')
-    const colours = ['nx-read', 'chino-regulator', 'melsec-c24', 'incon-link'].map(type => types[type].color)
+    assert.equal(types['plc-monitor'].paletteLabel, 'PLC monitor')
+    const colours = ['nx-read', 'chino-regulator', 'melsec-c24', 'incon-link', 'plc-monitor'].map(
+      type => types[type].color
+    )
     assert.equal(new Set(colours).size, colours.length)
-    for (const type of ['nx-read', 'nx-write', 'chino-regulator', 'melsec-c24', 'incon-link']) {
+    for (const type of ['nx-read', 'nx-write', 'chino-regulator', 'melsec-c24', 'incon-link', 'plc-monitor']) {
       assert.equal(types[type].category, 'serial PLC')
       assert.ok(fs.existsSync(path.join(NODES, 'icons', types[type].icon)))
     }

@@ -7,7 +7,7 @@ const { CODES } = require('../../lib/error')
 const { statusOf } = require('../../nodes/status')
 const { LANGUAGES, NODES, ROOT, TYPES, catalogue, html, loadDialogs, lookUp } = require('./dialogs')
 
-const ON_TABS = ['nx-read', 'nx-write', 'chino-regulator', 'melsec-c24', 'incon-link']
+const ON_TABS = ['nx-read', 'nx-write', 'chino-regulator', 'melsec-c24', 'incon-link', 'plc-monitor']
 
 const leaves = (tree, prefix = '') =>
   Object.entries(tree).flatMap(([key, value]) =>
@@ -27,7 +27,7 @@ const quoted = (text, pattern) => [...text.matchAll(pattern)].map(([, found]) =>
 const ownKeys = type => [
   ...quoted(html(type), /data-i18n="(?:\[\w+\])?([^"]+)"/g),
   ...quoted(html(type), /_\(\s*'([\w-]+\.[\w.]+)'/g),
-  ...quoted(html(type), /'((?:nx-write|chino-regulator|melsec-c24|incon-link)\.port\.\w+)'/g)
+  ...quoted(html(type), /'((?:nx-write|chino-regulator|melsec-c24|incon-link|plc-monitor)\.port\.\w+)'/g)
 ]
 
 /** Keys of what the dialogs share. */
@@ -65,7 +65,10 @@ const statusKeys = () => {
     ...[undefined, 'SENDING_OFF', 'WRITE_STALLED'].flatMap(code =>
       ['sent', 'confirmed', 'unknown', 'refused', 'failed'].map(outcome => ({ phase: 'sent', outcome, code }))
     ),
-    ...['opening', 'jammed', 'waiting'].map(state => ({ line: { state } }))
+    ...['opening', 'jammed', 'waiting'].map(state => ({ line: { state } })),
+    { phase: 'watching' },
+    { phase: 'watching', line: { state: 'open' } },
+    { phase: 'watching', line: { state: 'open' }, demoted: 2 }
   ]
   return states.map(state => `status.${statusOf(state).key}`)
 }

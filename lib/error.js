@@ -154,10 +154,22 @@ const CODES = Object.freeze({
     '{station} did not take the message: NAK {nak}, {reason}',
     'Look the code up in the manual of the module; send it again when the cause is gone.'
   ],
+  PEER_RESTARTED: [
+    '{station} has started anew: whether it had taken the line before is not known',
+    'Look at the controller before you send the line again.'
+  ],
+  OWN_ECHO: [
+    '{line} hears what it sends, so that nothing it hears can be taken for an acknowledgement',
+    'Set Echo of the line to "on": the adapter hears itself.'
+  ],
   // --- the conversation
   TIMEOUT: [
     'station {station} did not answer within {timeout} ms',
     'Check power, cable, A and B, station number and speed.'
+  ],
+  STATION_DEMOTED: [
+    'station {station} is silent since {time}; it is asked again {when}',
+    'Check its power, cable and station number. It comes back by itself.'
   ],
   INCOMPLETE: [
     'the answer of station {station} stopped after {got} of {expected} bytes',

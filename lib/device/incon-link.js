@@ -1,17 +1,17 @@
 'use strict'
 const { PlcError } = require('../error')
-const { nextNumber, START } = require('../codec/incon/check')
-const { BUFFER, encodeLine, inconFraming } = require('../codec/incon/message')
+const { nextNumber, START, unseal } = require('../codec/incon/check')
+const { encodeLine, inconFraming } = require('../codec/incon/message')
 const { realClock } = require('../line')
 const { createAudit } = require('./audit')
 const { asPlcError } = require('./failure')
-const { blank, choice, isOn, wholeNumber } = require('./options')
+const { readSettings } = require('./incon-settings')
+const { talkOf } = require('./incon-talk')
 
 /**
- * The serial link of an INCON-M84/M86/M86R: lines of text, both ways. Nothing in it confirms a line: one that has left the port is `sent`.
+ * The serial link of an INCON-M84/M86/M86R: lines of text, both ways. Nothing in it confirms a line: one that has left the port is `sent`; only where the
+ * controller's program acknowledges lines is it `confirmed` (incon-talk.js).
  */
-
-const ENCODINGS = ['ascii', 'latin1', 'utf8']
 
 // Ends the line that was cut off in the controller's buffer, and spoils it: without it the next line would be glued to it,
 // and a cut "O1234" would be taken for "O12"
@@ -20,17 +20,6 @@ const TORN_END = Buffer.from('?\r\n')
 /** What those have in common who send on one line: the number of the next checked line. Survives redeploys. */
 const memoryOf = line => (line.memory('INCON').incon ??= { number: START })
 
-const readSettings = given => ({
-  name: blank(given.name) ? 'INCON' : String(given.name).trim(),
-  encoding: choice('encoding', given.encoding, ENCODINGS),
-  checked: isOn(given.checked),
-  most: wholeNumber('most', given.most, { fallback: BUFFER, least: 2, most: 4096 }),
-  silence: wholeNumber('silence', given.silence, { fallback: 200, least: 0, most: 60000 }),
-  quiet: wholeNumber('quiet', given.quiet, { fallback: 50, least: 0, most: 60000 }),
-  before: wholeNumber('before', given.before, { fallback: 5, least: 0, most: 60000 }),
-  deadline: wholeNumber('deadline', given.deadline, { fallback: 0, least: 0, most: 3600000 })
-})
-
 const emptyStats = () => ({
   received: 0,
   incomplete: 0,
@@ -38,9 +27,12 @@ const emptyStats = () => ({
   lost: 0,
   repeated: 0,
   sent: 0,
+  confirmed: 0,
   unknown: 0,
   refused: 0,
-  failed: 0
+  failed: 0,
+  repeats: 0,
+  acksOut: 0
 })
 
 /**
@@ -62,24 +54,48 @@ class InconLink {
   #listeners = new Set()
   #closed = false
   #stats = emptyStats()
+  /** @type {import('./incon-talk').InconTalk|null} */
+  #talk = null
+  /** @type {import('./incon-talk').Port} */
+  #port
 
   /** @param {Record<string, any>} options of {@link createInconLink} */
-  constructor({ lease, clock = realClock, ...given }) {
+  constructor({ lease, clock = realClock, random = Math.random, ...given }) {
     this.#settings = readSettings(given)
     this.#lease = lease
     this.#clock = clock
     this.#audit = createAudit({ line: lease.line, device: this.#settings.name })
-    const { most, silence, encoding, checked } = this.#settings
-    const framing = inconFraming({ most, silence, ascii: encoding === 'ascii', checked })
+    const { most, silence, encoding, checked, acknowledge } = this.#settings
+    const framing = inconFraming({ most, silence, ascii: encoding === 'ascii', checked, acknowledge })
     const use = { torn: { first: TORN_END, apart: true } }
     this.#heard = lease.listen(framing, (message, { at }) => this.#take(message, at), use)
+    const listened = () => this.#listeners.size > 0
+    const counts = this.#stats
+    this.#port = { lease, settings: this.#settings, counts, listened, random, closed: false, leaving: new Set() }
+    if (acknowledge) this.#open(clock)
+  }
+
+  #open(clock) {
+    const { line } = this.#lease
+    const talk = talkOf(line, clock)
+    this.#talk = talk
+    // what the other side repeats from before a start of ours may be known already
+    this.#lease.on('state', this.#greet)
+    if (line.state === 'open') talk.greet(this.#port)
+  }
+
+  #greet = state => {
+    if (state === 'open') this.#talk?.greet(this.#port)
   }
 
   get name() {
     return this.#settings.name
   }
 
-  /** Lines by what became of them; `lost`: numbers of the checked format that never came. */
+  /**
+   * Lines by what became of them; `lost`: numbers of the checked format that never came; `repeated`: came once more and were dropped; `repeats`: lines of
+   * ours that went out once more; `acksOut`: acknowledgements.
+   */
   get stats() {
     return { ...this.#stats }
   }
@@ -92,10 +108,17 @@ class InconLink {
       stats.repeated++
       return
     }
-    stats.received++
     if (message.kind === 'damaged') stats.damaged++
     else if (!message.complete) stats.incomplete++
-    stats.lost += message.lost ?? 0
+    if (!this.#talk) return this.#deliver(message, timestamp)
+    // what was damaged comes again
+    const heard = message.kind === 'damaged' ? null : this.#talk.hear(message, this.#port)
+    if (heard) this.#deliver({ ...message, lost: heard.lost }, timestamp)
+  }
+
+  #deliver(message, timestamp) {
+    this.#stats.received++
+    this.#stats.lost += message.lost ?? 0
     const told = this.#told(message, timestamp)
     for (const callback of [...this.#listeners]) callback(told)
   }
@@ -168,10 +191,11 @@ class InconLink {
     } catch (error) {
       return failure('refused', error)
     }
+    if (this.#talk) return this.#converse(bytes, deadline)
     if (this.#settings.checked) memory.number = nextNumber(memory.number)
     try {
-      const { before, quiet } = this.#settings
-      const { ms } = await this.#lease.send(bytes, { quiet: before, after: quiet, deadline, label: this.name })
+      const { before, pause } = this.#settings
+      const { ms } = await this.#lease.send(bytes, { quiet: before, after: pause, deadline, label: this.name })
       return { outcome: 'sent', attempts: 1, ms, bytes: bytes.length }
     } catch (/** @type {any} */ error) {
       const sent = Number(error?.details?.sent) || 0
@@ -179,9 +203,19 @@ class InconLink {
     }
   }
 
-  /** What waits is still settled by the line; the lease stays its owner's. Any number of times. */
+  /** @returns {Promise<Outcome>} */
+  async #converse(bytes, deadline) {
+    const { text } = /** @type {{ text: Buffer }} */ (unseal(bytes.subarray(0, -2)))
+    const talk = /** @type {import('./incon-talk').InconTalk} */ (this.#talk)
+    return { ...(await talk.send(text, { port: this.#port, deadline })), ms: 0 }
+  }
+
+  /** What waits is still settled; the lease stays its owner's. Any number of times. */
   close() {
     this.#closed = true
+    this.#port.closed = true
+    for (const leave of [...this.#port.leaving]) leave()
+    this.#lease.off('state', this.#greet)
     this.#listeners.clear()
     this.#heard.close()
   }
@@ -195,13 +229,19 @@ class InconLink {
  * @param {string} [options.name]
  * @param {'ascii'|'latin1'|'utf8'} [options.encoding] of text; default ascii: other bytes that come are marked as damage
  * @param {boolean} [options.checked] lines are `#NN text*HH` both ways (codec/incon/check.js); default false
+ * @param {boolean} [options.acknowledge] checked lines are acknowledged, both ways (codec/incon/acknowledge.js); default false
+ * @param {number} [options.attempts] of a line that is not acknowledged: 1 to 100, default 5
+ * @param {number} [options.ackTimeout] ms until the acknowledgement, default 1000: two scans of the PLC, the longest line and some; a random half of it comes
+ *   on top
  * @param {number} [options.most] bytes of a line that comes, with its end: 2 to 4096, default 256
  * @param {number} [options.silence] ms after which a line without line feed is delivered as torn, default 200; 0: never
- * @param {number} [options.quiet] ms after each line that is sent, default 50: at least two scans of the controller's PLC and some, or it may see two
- *   lines as one
+ * @param {number} [options.scan] ms, the longest scan time of the controller's PLC, default 100: after each line that is sent nothing follows for two scans and
+ *   5 ms, or it may see two lines as one
+ * @param {number} [options.quiet] ms of that pause at least, default 50
  * @param {number} [options.before] ms of silence on the line before one is sent, default 5
  * @param {number} [options.deadline] ms that a line may wait for its turn, default no limit
  * @param {any} [options.clock] for the times of outcomes
+ * @param {() => number} [options.random] 0 to 1, for the times of repetitions
  * @returns {InconLink}
  * @throws {PlcError} BAD_SETTING, LINE_USE, LINE_CLOSED
  */
@@ -220,11 +260,11 @@ const createInconLink = options => new InconLink(options)
  * @property {number} [lost] checked format: lines that are missing before this one
  *
  * @typedef {object} Outcome
- * @property {'sent'|'unknown'|'refused'|'failed'} outcome sent: every byte has left the port, nobody confirms it; unknown: it was interrupted; refused:
- *   it cannot be a line; failed: nothing went out
+ * @property {'sent'|'confirmed'|'unknown'|'refused'|'failed'} outcome sent: every byte has left the port, nobody confirms it; confirmed: acknowledged;
+ *   unknown: it was interrupted, or not acknowledged; refused: it cannot be a line; failed: nothing went out
  * @property {string} [code]
  * @property {string} [text]
- * @property {number} attempts 0 or 1
+ * @property {number} attempts lines that went out: 0 or 1, more where lines are acknowledged
  * @property {number} ms from the call to the outcome
  * @property {number} bytes that went out
  */

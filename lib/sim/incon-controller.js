@@ -1,18 +1,9 @@
 'use strict'
 
 const { START, missingBetween, nextNumber, seal, unseal } = require('../codec/incon/check')
-const {
-  createHandshake,
-  createM68Example,
-  createNcReceiver,
-  createNcSender,
-  createReceiveExample,
-  createSendProgram
-} = require('../codec/incon/handshake')
-const { PlcError } = require('../error')
-const { checkStation } = require('./station')
+const { createInconProgram } = require('./incon-program')
+const { prepare } = require('./incon-state')
 
-const NUMBERS = { least: 1, most: 247, what: 'a simulated controller' }
 const END = Buffer.from('\r\n')
 
 /**
@@ -26,6 +17,8 @@ const END = Buffer.from('\r\n')
  * - `answer` `none`, `echo`, or a function (text) → text, bytes or null, called for each message that the PLC takes
  * - `events` texts that it sends in turn, one `every` ms (0: none)
  * - `checked` its programs speak the checked format (codec/incon/check.js)
+ * - `acknowledge` its programs speak the acknowledged format (codec/incon/acknowledge.js); `ackTimeout` ms until the acknowledgement (1000; a random half of
+ *   it comes on top), `attempts` of a line (5), `random` for these times
  * - `keep` so many of the latest messages and lines are kept (1000)
  * - `onMessage(message)` for each message that the PLC's program takes
  *
@@ -35,6 +28,7 @@ const END = Buffer.from('\r\n')
  */
 function createInconController(settings) {
   const incon = prepare(settings)
+  begin(incon)
   startEvents(incon)
   return {
     station: incon.station,
@@ -42,6 +36,7 @@ function createInconController(settings) {
     messages: incon.messages,
     sent: incon.sent,
     reported: incon.reported,
+    outcomes: incon.outcomes,
     structures: { send: incon.send, recv: incon.recv },
     speak: send => void (incon.transmit = send),
     appetite: () => 1,
@@ -49,88 +44,27 @@ function createInconController(settings) {
     disguise: bytes => Buffer.from(bytes.map(byte => (byte > 0x20 ? 0x58 : byte))),
     say: text => say(incon, text),
     mCode: data => startMCode(incon, data),
+    restart: () => switchOn(incon),
     close: () => close(incon)
   }
 }
 
-function prepare(settings) {
-  const { clock, station = 1, scan = 10, restart = 'always', clears = 'finish', ...rest } = settings
-  checkStation(station, NUMBERS)
-  number('scan', scan, { least: 1, most: 1000 })
-  oneOf('restart', restart, ['always', 'once'])
-  oneOf('clears', clears, ['finish', 'length'])
-  const { receiveClears = true } = rest
-  return {
-    phase: 0,
-    answer: 'none',
-    events: [],
-    every: 0,
-    checked: false,
-    keep: 1000,
-    onMessage: null,
-    ...rest,
-    clock,
-    station: Number(station),
-    scan,
-    ...structures({ restart, clears, receiveClears }),
-    ...emptyState()
-  }
+/** The program starts; one that acknowledges says so. */
+function begin(incon) {
+  const { acknowledge, clock, random, ackTimeout, attempts, counts } = incon
+  if (!acknowledge) return
+  const settled = outcome => keepIn(incon, incon.outcomes, outcome)
+  incon.program = createInconProgram({ clock, random, ackTimeout, attempts, counts, settled })
+  wake(incon)
 }
 
-/** Both structures, with the NC's side and the PLC's programs. */
-function structures({ restart, clears, receiveClears }) {
-  const send = createHandshake()
-  const recv = createHandshake()
-  return {
-    send,
-    recv,
-    ncSender: createNcSender(send),
-    ncReceiver: createNcReceiver(recv, { restart }),
-    receiveProgram: createReceiveExample(recv, { clears: receiveClears }),
-    sendProgram: createSendProgram(send, { clears }),
-    m68: createM68Example(send, { clears })
-  }
-}
-
-const emptyState = () => ({
-  mCode: { flag: false, data: 0, finish: 0 },
-  /** @type {Buffer[]} what the sending program has to send */
-  queue: [],
-  busy: false,
-  /** @type {any[]} */
-  messages: [],
-  /** @type {any[]} */
-  sent: [],
-  /** @type {any[]} */
-  reported: [],
-  number: START,
-  lastNumber: /** @type {number|null} */ (null),
-  transmit: /** @type {any} */ (null),
-  timer: null,
-  eventTimer: null,
-  counts: emptyCounts()
-})
-
-const emptyCounts = () => ({
-  messages: 0,
-  bytesIn: 0,
-  bytesLost: 0,
-  damaged: 0,
-  missing: 0,
-  overwritten: 0,
-  lines: 0,
-  reported: 0,
-  mCodes: 0
-})
-
-function number(setting, value, { least, most }) {
-  if (typeof value === 'number' && value >= least && value <= most) return
-  throw new PlcError('BAD_SETTING', { setting, value, reason: `allowed is ${least} to ${most}` })
-}
-
-function oneOf(setting, value, known) {
-  if (known.includes(value)) return
-  throw new PlcError('BAD_SETTING', { setting, value, reason: `it must be ${known.join(' or ')}` })
+/** The controller is switched off and on: what its program knew is gone. */
+function switchOn(incon) {
+  incon.queue.length = 0
+  Object.assign(incon, { busy: false, number: START, lastNumber: null })
+  Object.assign(incon.recv, { length: 0, finish: 0 })
+  Object.assign(incon.send, { length: 0, finish: 0 })
+  begin(incon)
 }
 
 // --- the PLC: one scan after the other, but none where nothing can happen
@@ -152,15 +86,30 @@ function onScan(incon) {
   const before = stateOf(incon)
   const taken = incon.receiveProgram.scan()
   if (taken) take(incon, taken)
+  if (incon.program) programScan(incon)
   sendScan(incon)
   ncLook(incon)
   // the programs know no time: where a scan has changed nothing, the next one would not either
   if (stateOf(incon) !== before) wake(incon)
 }
 
+/** What it puts into the queue for SerialLinkSend at this scan. It does not begin while a line is coming. */
+function programScan(incon) {
+  const { program, clock, queue, recv } = incon
+  const isComing = recv.length > 0 && recv.length !== incon.seenLength
+  incon.seenLength = recv.length
+  const bytes = queue.length > 0 || isComing ? null : program.next()
+  if (bytes) queue.push(bytes)
+  clock.clearTimer(incon.dueTimer)
+  const ms = queue.length > 0 ? null : program.due()
+  if (ms !== null) incon.dueTimer = clock.setTimer(() => wake(incon), ms)
+}
+
 function take(incon, { bytes, shown, full }) {
   const { clock, counts, receiveProgram } = incon
-  const message = { at: clock.now(), bytes, text: textOf(bytes), shown, full, ...examine(incon, bytes) }
+  const examined = examine(incon, bytes)
+  if (!examined) return
+  const message = { at: clock.now(), bytes, text: textOf(bytes), shown, full, ...examined }
   counts.messages++
   counts.overwritten = receiveProgram.overwritten
   keepIn(incon, incon.messages, message)
@@ -172,8 +121,9 @@ function take(incon, { bytes, shown, full }) {
 
 const textOf = bytes => bytes.toString('latin1').replace(/\r?\n$/, '')
 
-/** In the checked format: whether it is valid, and how many are missing before it. */
+/** In the checked format: whether it is valid, and how many are missing before it. Null: it is no line, or one that came again. */
 function examine(incon, bytes) {
+  if (incon.program) return incon.program.take(Buffer.from(textOf(bytes), 'latin1'))
   if (!incon.checked) return {}
   const opened = unseal(Buffer.from(textOf(bytes), 'latin1'))
   if ('reason' in opened) {
@@ -216,6 +166,7 @@ function ncLook(incon) {
   keepIn(incon, incon.sent, { at, end, bytes, text: textOf(bytes) })
   const left = () => {
     ncSender.sent()
+    incon.program?.left()
     ncLook(incon)
     wake(incon)
   }
@@ -234,11 +185,16 @@ function hear(incon, bytes) {
 
 function say(incon, text) {
   const bytes = Buffer.from(text)
+  if (incon.program) incon.program.say(bytes)
+  else queueLine(incon, text, bytes)
+  wake(incon)
+}
+
+function queueLine(incon, text, bytes) {
   const sealed = incon.checked ? seal(bytes, incon.number) : bytes
   if (incon.checked) incon.number = nextNumber(incon.number)
   // bytes are sent as they are; a text is a line
   incon.queue.push(typeof text === 'string' || incon.checked ? Buffer.concat([sealed, END]) : sealed)
-  wake(incon)
 }
 
 function startMCode(incon, data) {
@@ -257,8 +213,9 @@ function startEvents(incon) {
   incon.eventTimer = clock.setTimer(tick, every, { quiet: true })
 }
 
-function close({ clock, timer, eventTimer }) {
+function close({ clock, timer, eventTimer, dueTimer }) {
   clock.clearTimer(timer)
+  clock.clearTimer(dueTimer)
   clock.clearTimer(eventTimer)
 }
 
@@ -271,12 +228,14 @@ function keepIn({ keep }, list, entry) {
  * @typedef {object} InconController
  * @property {number} station
  * @property {{ messages: number, bytesIn: number, bytesLost: number, damaged: number, missing: number, overwritten: number, lines: number,
- *   reported: number, mCodes: number }} counts bytesLost: for which SerialLinkRecv had no room; damaged, missing: of the checked format;
- *   overwritten: the manual's strCopy wrote past its array; lines: sent; reported: what the program takes for sent
+ *   reported: number, mCodes: number, confirmed: number, unknown: number, repeats: number, repeated: number, acks: number }} counts bytesLost: for which SerialLinkRecv had no room; damaged, missing: of the checked format;
+ *   overwritten: the manual's strCopy wrote past its array; lines: sent; reported: what the program takes for sent; of
+ *   the acknowledged format: confirmed and unknown lines of its own, repeats of these, lines that came again, acknowledgements
  * @property {{ at: number, bytes: Buffer, text: string, shown: string, full: boolean, valid?: boolean, number?: number|null, missing?: number }[]} messages
  *   that the PLC's program took: `text` without line end (checked format: without number and check, if `valid`), `shown` what the manual's example displays
  * @property {{ at: number, end: number, bytes: Buffer, text: string }[]} sent
  * @property {{ at: number, bytes: Buffer }[]} reported
+ * @property {{ text: string, outcome: 'confirmed'|'unknown'|'failed', attempts?: number }[]} outcomes acknowledged format: of its own lines
  * @property {{ send: import('../codec/incon/handshake').Handshake, recv: import('../codec/incon/handshake').Handshake }} structures
  * @property {(send: (bytes: Buffer) => number) => void} speak for the wire
  * @property {() => number} appetite for the wire
@@ -284,6 +243,7 @@ function keepIn({ keep }, list, entry) {
  * @property {(bytes: Buffer) => Buffer} disguise for the wire
  * @property {(text: string|Uint8Array) => void} say the PLC's program sends a line, or bytes as they are
  * @property {(data: number) => void} mCode the NC's program comes to an M code; 68 sends `Test`
+ * @property {() => void} restart it is switched off and on: its programs begin anew
  * @property {() => void} close no scan and no event any more
  */
 

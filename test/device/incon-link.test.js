@@ -29,8 +29,8 @@ describe('INCON link', () => {
   })
 
   describe('two lines sent at once are two messages for the PLC', () => {
-    const twoLines = async ({ scan, phase, restart, quiet }) => {
-      open({ sim: { scan, phase, restart }, link: { quiet } })
+    const twoLines = async ({ scan, phase, restart, link = {} }) => {
+      open({ sim: { scan, phase, restart }, link })
       await bench.run(Promise.all([bench.device.send('O1234'), bench.device.send('START')]))
       await bench.clock.drain()
       const seen = bench.seen()
@@ -38,36 +38,49 @@ describe('INCON link', () => {
       return seen
     }
     for (const restart of ['always', 'once']) {
-      it(`at scan times from 1 to 100 ms, with a quiet time of two scans and some (NC: ${restart})`, async () => {
+      it(`at scan times from 1 to 100 ms, with the defaults (NC: ${restart})`, async () => {
         for (let scan = 1; scan <= 100; scan++) {
-          const seen = await twoLines({
-            scan,
-            phase: (scan * 0.618) % scan,
-            restart,
-            quiet: Math.max(50, 2 * scan + 5)
-          })
+          const seen = await twoLines({ scan, phase: (scan * 0.618) % scan, restart })
           assert.deepStrictEqual(seen, ['O1234', 'START'], `scan ${scan}`)
         }
       })
     }
 
-    it('with the quiet time that is the default, to a scan time of 22 ms, at any phase', async () => {
-      for (let phase = 0; phase < 22; phase++) {
-        assert.deepStrictEqual(
-          await twoLines({ scan: 22, phase, restart: 'always' }),
-          ['O1234', 'START'],
-          `phase ${phase}`
-        )
+    it('with a scan time that is set, at any phase: twice that and 5 ms, but not less than the quiet time', async () => {
+      for (const [scan, link] of /** @type {[number, any][]} */ ([
+        [22, { scan: 0 }],
+        [22, { scan: 22, quiet: 0 }],
+        [7, { scan: 7, quiet: 0 }]
+      ])) {
+        for (let phase = 0; phase < scan; phase++) {
+          const seen = await twoLines({ scan, phase, restart: 'always', link })
+          assert.deepStrictEqual(seen, ['O1234', 'START'], `scan ${scan}, phase ${phase}`)
+        }
       }
     })
 
+    it('the pause between two lines: the scan time and the quiet time, whichever asks for more', async () => {
+      const pauses = []
+      for (const link of [{}, { scan: 0 }, { scan: 10 }, { scan: 0, quiet: 0 }, { scan: 30, quiet: 90 }]) {
+        open({ link })
+        await bench.run(Promise.all([bench.device.send('A'), bench.device.send('B')]))
+        const [one, two] = bench.lease.line.trace().filter(({ dir }) => dir === 'out')
+        pauses.push(Math.round(two.t - one.t - (3 * 10000) / 9600))
+        await bench.close()
+      }
+      assert.deepStrictEqual(pauses, [205, 50, 50, 5, 90])
+    })
+
     it('a quiet time that is too short for the PLC shows: one message of two lines', async () => {
-      assert.deepStrictEqual(await twoLines({ scan: 100, phase: 0, restart: 'always', quiet: 20 }), ['O1234\r\nSTART'])
+      open({ sim: { scan: 100, restart: 'always' }, link: { scan: 0, quiet: 20 } })
+      await bench.run(Promise.all([bench.device.send('O1234'), bench.device.send('START')]))
+      await bench.clock.drain()
+      assert.deepStrictEqual(bench.seen(), ['O1234\r\nSTART'])
     })
   })
 
   it('waits until the controller has been silent, keeps the quiet time and the order', async () => {
-    open({ wire: { echo: false }, sim: { scan: 1 }, link: { quiet: 30, before: 5 } })
+    open({ wire: { echo: false }, sim: { scan: 1 }, link: { quiet: 30, scan: 0, before: 5 } })
     bench.controller.say('x'.repeat(100))
     await bench.clock.advance(20)
     const outcomes = bench.run(Promise.all(['A', 'B', 'C'].map(value => bench.device.send(value))))

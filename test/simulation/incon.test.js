@@ -36,6 +36,7 @@ async function exchange(options) {
   const bench = inconBench({
     wire: { wear: WEAR, collisions: false, chunk: 8 },
     ...options,
+    link: { scan: 10, ...options.link },
     line: { queueLimit: PART },
     sim: { scan: 10, keep: LINES * 2, ...options.sim }
   })

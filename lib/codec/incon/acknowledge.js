@@ -69,17 +69,17 @@ const isSame = (one, { number, text }) =>
  * Whether a line is a new one. A number that is not due is only believed when the line comes once more, or the one behind it: two damaged bytes may make
  * one number of another, and whoever sends repeats what is not acknowledged.
  * @param {Reception} reception @param {Line} line
- * @returns {{ verdict: 'new', lost: number } | { verdict: 'repeated'|'doubtful' }} lost: lines that the other side has given up before this one; new: it
+ * @returns {{ verdict: 'new'|'repeated'|'doubtful', lost: number }} lost: lines that the other side has given up before this one; new: it
  *   counts when it was given to `accept`
  */
 const judge = (reception, line) => {
   const { last, doubtful } = reception
-  if (isSame(last, line)) return { verdict: 'repeated' }
+  if (isSame(last, line)) return { verdict: 'repeated', lost: 0 }
   const due = last === null || line.number === nextNumber(last.number)
   const confirmed = isSame(doubtful, line) || (doubtful !== null && line.number === nextNumber(doubtful.number))
   if (due || confirmed) return { verdict: 'new', lost: missingBetween(last?.number ?? null, line.number) }
   reception.doubtful = { number: line.number, text: Buffer.from(line.text) }
-  return { verdict: 'doubtful' }
+  return { verdict: 'doubtful', lost: 0 }
 }
 
 /** A line was taken: it is acknowledged, and its repetitions are known. @param {Reception} reception @param {Line} line */

@@ -2,6 +2,7 @@
 
 const { PlcError } = require('../error')
 const { EMPTY, Receiver } = require('./receiver')
+const { Repeats } = require('./repeats')
 const { Silence } = require('./silence')
 
 /** A timer that fires this late (ms) tells of a busy process, not of a silent station: then the bytes get time to come in. */
@@ -21,6 +22,7 @@ class Exchange {
   #echo
   #settings
   #rx = new Receiver()
+  #repeats
   #silence
   /** @type {any} */
   #job = null
@@ -39,7 +41,13 @@ class Exchange {
     this.#times = times
     this.#echo = echo
     this.#link = link
+    this.#repeats = new Repeats(times.character)
     this.#silence = new Silence({ clock, quietSince: () => this.quietSince })
+  }
+
+  /** The port was opened. */
+  opened() {
+    this.#repeats.reset()
   }
 
   get busy() {
@@ -84,6 +92,7 @@ class Exchange {
     const job = this.#job
     const { send } = job.step
     this.#echo.sent(send)
+    this.#repeats.sent()
     job.phase = 'awaiting'
     job.sentAt = this.#clock.now()
     this.#sendEnd = job.sentAt + send.length * this.#times.character
@@ -158,6 +167,11 @@ class Exchange {
       const verdict = step.match(bytes)
       if (verdict.take > 0 && verdict.take <= bytes.length) {
         const frame = this.#rx.take(verdict.take)
+        if (this.#repeats.isOld(frame, this.#query)) {
+          this.#drop(frame)
+          continue
+        }
+        this.#repeats.answered(frame, this.#query)
         this.#echo.answered(frame)
         this.#settle(null, frame)
         return verdict
@@ -180,9 +194,17 @@ class Exchange {
       if (!(skip > 0) || this.#echo.begins(bytes.subarray(at))) break
       at += skip
     }
-    const dropped = this.#rx.take(at)
-    this.#echo.disturbed(dropped)
-    this.#link.skipped(dropped)
+    this.#drop(this.#rx.take(at))
+  }
+
+  #drop(bytes) {
+    this.#echo.disturbed(bytes)
+    this.#link.skipped(bytes)
+  }
+
+  get #query() {
+    const { step, sentAt } = this.#job
+    return { length: step.send.length, sentAt, now: this.#clock.now() }
   }
 
   #damaged({ bad, length }) {
@@ -263,6 +285,7 @@ class Exchange {
   #settle(error, bytes = EMPTY) {
     const job = this.#job
     this.#idle()
+    if (error) this.#repeats.failed()
     const rest = this.#rx.takeAll()
     const due = this.#sendEnd + (job.step.timeout ?? 0)
     job.done(error, bytes, { due, rest, sent: job.phase === 'awaiting', ms: this.#clock.now() - this.#sendEnd })

@@ -105,6 +105,7 @@ class Requests {
 
   opened() {
     this.#echo.reset()
+    this.#exchange.opened()
     this.#quarantine.opened()
   }
 

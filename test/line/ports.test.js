@@ -49,6 +49,33 @@ describe('line: the list of ports', () => {
     assert.equal(found[3].path, '/dev/ttyUSB1')
   })
 
+  it('names an adapter without a stable path by what it calls itself', async () => {
+    const list = async () => [{ path: '/dev/ttyUSB0', pnpId: MOXA, manufacturer: 'Moxa' }]
+    assert.deepEqual(await listPorts({ list, files: files() }), [
+      { path: '/dev/ttyUSB0', device: '/dev/ttyUSB0', label: 'Moxa Technologies UPort 1150 (ttyUSB0)' }
+    ])
+  })
+
+  it('has also what only a stable name leads to, and not what it leads nowhere', async () => {
+    const links = { [FTDI]: '/dev/ttyUSB7', [MOXA]: null }
+    const list = async () => [{ path: '/dev/ttyUSB0' }]
+    assert.deepEqual(await listPorts({ list, files: files({ links }) }), [
+      { path: `/dev/serial/by-id/${FTDI}`, device: '/dev/ttyUSB7', label: 'FTDI USB-RS485 Cable (ttyUSB7)' },
+      { path: '/dev/ttyUSB0', device: '/dev/ttyUSB0', label: 'ttyUSB0' }
+    ])
+  })
+
+  it('a port of the board that something is known of is a real one', async () => {
+    for (const known of [{ manufacturer: 'A' }, { pnpId: 'A' }, { vendorId: '1234' }]) {
+      const list = async () => [{ path: '/dev/ttyS0' }, { path: '/dev/ttyS4', ...known }]
+      const found = await listPorts({ list, files: files() })
+      assert.deepEqual(
+        found.map(({ device }) => device),
+        ['/dev/ttyS4']
+      )
+    }
+  })
+
   it('hides the empty ports of the board if there are others', async () => {
     const list = async () => [{ path: '/dev/ttyS0' }, { path: '/dev/ttyS31' }, { path: '/dev/ttyUSB0' }]
     const paths = async l => (await listPorts({ list: l, files: files() })).map(({ path }) => path)

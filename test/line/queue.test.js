@@ -94,6 +94,36 @@ describe('line: queue', () => {
     assert.equal(queue.next(always), undefined)
   })
 
+  it('removes from the middle, and what nobody added is not there', () => {
+    const queue = filled([
+      ['a', POLL, 1],
+      ['b', POLL, 1, 'key'],
+      ['c', POLL, 1]
+    ])
+    const other = { name: 'x', priority: POLL, station: 1, share: null }
+    assert.equal(queue.remove(other), false)
+    assert.equal(queue.remove({ ...other, station: 2 }), false)
+    assert.equal(queue.remove(queue.waiting('key')), true)
+    assert.deepEqual([queue.size, queue.waiting('key')], [2, undefined])
+    assert.equal(order(queue), 'a c')
+  })
+
+  it('one that goes first stands before the others of its station', () => {
+    const queue = filled([
+      ['a', POLL, 1],
+      ['b', POLL, 1]
+    ])
+    queue.add({ name: 'c', priority: POLL, station: 1, share: null }, { first: true })
+    assert.deepEqual(
+      queue.all().map(({ name }) => name),
+      ['c', 'a', 'b']
+    )
+    assert.deepEqual(
+      [...queue.heads()].map(({ name }) => name),
+      ['c']
+    )
+  })
+
   it('knows when it is full', () => {
     const queue = filled([['p', POLL, 1]], { limit: 1 })
     assert.equal(queue.full, true)

@@ -136,9 +136,9 @@ class Connection {
     return this.#transport?.waiting ?? false
   }
 
-  /** Asks the transport whether it is still there: `silent` requests in a row were not answered. */
-  check(silent) {
-    this.#transport?.check?.(silent)
+  /** Asks the transport whether it is still there. @param {{ all: number, known: number }} missing see missing.js */
+  check(missing) {
+    this.#transport?.check?.(missing)
   }
 
   /** Closes what does not work any more, and starts again. */

@@ -19,7 +19,7 @@ class Driver {
   /**
    * @param {any} parts `{ exchange, scheduler, quarantine, recorder }` of the line
    * @param {{ gap: number, latenessBound: number }} least of the line, in ms; runs and steps may ask for more
-   * @param {{ refusal: () => any, answered: () => void, troubled: (error: any) => void,
+   * @param {{ refusal: () => any, answered: (station: any) => void, troubled: (error: any) => void,
    *   stray: (bytes: Buffer) => void }} host
    *   refusal: why nothing can be sent now, or null
    */
@@ -84,7 +84,7 @@ class Driver {
       this.#host.troubled(error)
     } else if (step.match) {
       this.#quarantine.answered(station, answer)
-      this.#host.answered()
+      this.#host.answered(station)
     }
     if (facts.rest.length > 0) this.#host.stray(facts.rest)
     this.#resume(run, error, answer)

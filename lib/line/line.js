@@ -4,6 +4,7 @@ const { EventEmitter } = require('node:events')
 const { causeOf } = require('../error')
 const { Condition } = require('./condition')
 const { Connection } = require('./connection')
+const { Missing } = require('./missing')
 const { Outage } = require('./outage')
 const { Recorder } = require('./recorder')
 const { Requests } = require('./requests')
@@ -36,7 +37,7 @@ class Line extends EventEmitter {
   #outage
   #calm
   #grace = null
-  #silent = 0
+  #missing = new Missing()
 
   /**
    * @param {{ name: string, settings: any, clock: any, make: () => any, random: () => number, claims: any,
@@ -92,9 +93,9 @@ class Line extends EventEmitter {
       isOpen: () => this.#connection.isOpen,
       use: this.#use,
       late: fact => this.#late(fact),
-      answered: () => this.#answered(),
+      answered: station => this.#answered(station),
       troubled: error => this.#troubled(error),
-      check: () => this.#connection.check(0)
+      check: () => this.#connection.check({ all: 0, known: 0 })
     }
   }
 
@@ -166,13 +167,13 @@ class Line extends EventEmitter {
     this.#use.leave(lease)
   }
 
-  #answered() {
-    this.#silent = 0
+  #answered(station) {
+    this.#missing.answered(station)
     this.#connection.proven()
   }
 
   #troubled(error) {
-    if (error.code === 'TIMEOUT') this.#connection.check(++this.#silent)
+    if (error.code === 'TIMEOUT') this.#connection.check(this.#missing.missed(error.details.station))
     else if (error.code === 'LINE_JAMMED') this.#jam(error)
     else if (isLineFailure(error)) this.#restart(error)
   }
@@ -191,6 +192,7 @@ class Line extends EventEmitter {
 
   #opened() {
     this.#stopTimers()
+    this.#missing.opened()
     this.#requests.opened()
     this.#stream.opened()
     this.#become('open')

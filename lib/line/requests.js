@@ -22,7 +22,7 @@ class Requests {
   /**
    * @param {{ name: string, clock: any, settings: any, times: any, recorder: any, memories: Map<any, any>,
    *   write: (bytes: Buffer, done: (error?: any) => void) => void, hint: (count: number, at: number) => void, waiting: () => boolean }} parts
-   * @param {{ refusal: () => any, rejection: () => any, isOpen: () => boolean, late: (fact: any) => void, answered: () => void,
+   * @param {{ refusal: () => any, rejection: () => any, isOpen: () => boolean, late: (fact: any) => void, answered: (station: any) => void,
    *   troubled: (error: any) => void }} host the line
    */
   constructor({ name, clock, settings, times, recorder, memories, write, hint, waiting }, host) {

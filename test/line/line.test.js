@@ -262,14 +262,28 @@ describe('line: opening, losing, coming back', () => {
   it('asks the transport after each timeout whether it is still there', async () => {
     const checks = []
     const { simulated } = require('../../lib/line/transports/memory')
-    const checking = (settings, clock) => ({ ...simulated(settings, clock), check: silent => checks.push(silent) })
-    const { lease, run, wire } = createBench({ transports: { simulated: checking } })
+    const checking = (settings, clock) => ({
+      ...simulated(settings, clock),
+      check: ({ all, known }) => checks.push([all, known])
+    })
+    const { lease, run, wire, clock } = createBench({ transports: { simulated: checking } })
     for (const n of [1, 2, 3]) await run(failure(lease.run(() => toy.ask(n), { station: n })))
     wire.onQuery = answering
     await run(lease.run(() => toy.ask(4), { station: 4 }))
     wire.onQuery = () => {}
-    await run(failure(lease.run(() => toy.ask(5), { station: 5 })))
-    assert.deepEqual(checks, [1, 2, 3, 1])
+    for (const n of [5, 4]) await run(failure(lease.run(() => toy.ask(n), { station: n })))
+    wire.unplug()
+    await clock.advance(300)
+    await run(failure(lease.run(() => toy.ask(4), { station: 4 })))
+    // in a row, and how many of them of stations that have answered since the line was opened
+    assert.deepEqual(checks, [
+      [1, 0],
+      [2, 0],
+      [3, 0],
+      [1, 0],
+      [2, 1],
+      [3, 0]
+    ])
   })
 
   it('a transport that goes when it is asked ends the run, which cannot be repeated', async () => {

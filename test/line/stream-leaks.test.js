@@ -124,7 +124,7 @@ describe('listening line: a serial port', () => {
       close: done => done(),
       hint: () => {},
       id: () => 'port',
-      check: silent => checks.push(silent)
+      check: ({ all }) => checks.push(all)
     })
     const clock = createVirtualClock()
     const lease = createPool({ clock, transports: { serial } }).open({ path: 'port' }, { id: 'a', name: 'a' })

@@ -5,9 +5,13 @@ const { PlcError } = require('../../error')
 const { Intake } = require('./intake')
 
 const CLOSE_LIMIT = 300
-/** After so many requests in a row without an answer the connection is taken for half-open; then after twice as many, … */
+/** So many requests in a row that stations left unanswered which had answered before: the connection is half-open. */
+const LOST = 3
+/** Of stations that have not answered yet; then after twice as many, … */
 const SILENT = 5
 const MOST_SILENT = 160
+/** A connection on which nothing was heard for so long (ms) is not kept because requests are rare. */
+const LONG = 600000
 
 const REASONS = {
   ECONNREFUSED: 'nothing listens there',
@@ -39,6 +43,7 @@ class TcpTransport {
   #timer = null
   #open = false
   #ended = false
+  #heardAt = 0
 
   constructor(settings, clock) {
     this.#settings = settings
@@ -64,7 +69,9 @@ class TcpTransport {
       hold: held => (held ? socket.pause() : socket.resume())
     })
     socket.on('data', bytes => {
-      if (!this.#ended) this.#intake.take(bytes)
+      if (this.#ended) return
+      this.#heardAt = this.#clock.now()
+      this.#intake.take(bytes)
     })
     socket.on('error', error => this.#lose(REASONS[error['code']] ?? error.message))
     socket.on('end', () => this.#lose('the serial server closed the connection'))
@@ -75,6 +82,7 @@ class TcpTransport {
     if (this.#ended) return
     this.#clock.clearTimer(this.#timer)
     this.#open = true
+    this.#heardAt = this.#clock.now()
     this.#handlers.opened()
   }
 
@@ -110,9 +118,11 @@ class TcpTransport {
     return this.#intake?.waiting ?? false
   }
 
-  /** @param {number} silent requests in a row without an answer */
-  check(silent) {
-    if (isSuspicious(silent)) this.#lose(`${silent} requests in a row without an answer: the connection is dead`)
+  /** @param {{ all: number, known: number }} missing see missing.js */
+  check({ all, known }) {
+    const long = all > 0 && this.#clock.now() - this.#heardAt >= LONG
+    if (known < LOST && !isSuspicious(all) && !long) return
+    this.#lose(`${all} requests in a row without an answer: the connection is dead`)
   }
 
   close(done) {

@@ -112,17 +112,60 @@ describe('tcp transport', () => {
     assert.deepEqual([error.code, error.details.sent], ['LINE_DOWN', true])
   })
 
-  it('takes a connection for half-open after five requests without an answer', async () => {
+  const silent = async (count, station = 5) => {
+    const errors = []
+    for (let i = 0; i < count; i++) {
+      const make = () => toy.ask(station, { timeout: 20 })
+      errors.push((await failure(lease.run(make, { station, latenessBound: 5 }))).code)
+    }
+    return errors
+  }
+
+  it('takes a connection for half-open after three requests without an answer of a station that has answered on it', async () => {
+    open()
+    await ask()
+    server.onQuery = () => {}
+    assert.deepEqual((await silent(3)).slice(0, 2), ['TIMEOUT', 'TIMEOUT'])
+    assert.match(lease.line.reason.message, /3 requests in a row without an answer: the connection is dead/)
+    server.onQuery = answering
+    await reached(lease, 'open')
+    assert.deepEqual(await ask(), [5])
+    assert.equal(server.accepted, 2)
+  })
+
+  it('and after five, of one that has not', async () => {
     server.onQuery = () => {}
     open()
-    const errors = []
-    for (let i = 0; i < 5; i++) errors.push((await failure(ask({ timeout: 20 }))).code)
-    assert.deepEqual(errors.slice(0, 4), ['TIMEOUT', 'TIMEOUT', 'TIMEOUT', 'TIMEOUT'])
+    assert.deepEqual((await silent(5)).slice(0, 4), ['TIMEOUT', 'TIMEOUT', 'TIMEOUT', 'TIMEOUT'])
     assert.match(lease.line.reason.message, /5 requests in a row without an answer: the connection is dead/)
     server.onQuery = answering
     await reached(lease, 'open')
     assert.deepEqual(await ask(), [5])
     assert.equal(server.accepted, 2)
+  })
+
+  it('dead stations between living ones are no reason to connect anew', async () => {
+    server.onQuery = (bytes, socket) => bytes[1] === 5 && answering(bytes, socket)
+    open()
+    for (let round = 0; round < 4; round++) {
+      await ask()
+      for (const station of [6, 7, 8, 9]) await silent(1, station)
+    }
+    assert.equal(lease.line.state, 'open')
+    assert.equal(server.accepted, 1)
+  })
+
+  it('a connection on which nothing was heard for ten minutes ends with the next request that is not answered', async () => {
+    server.onQuery = () => {}
+    let ahead = 0
+    const clock = fastClock()
+    pool = createPool({ clock: { ...clock, now: () => clock.now() + ahead }, random: () => 0.5 })
+    open()
+    await silent(1)
+    assert.equal(lease.line.state, 'open')
+    ahead = 600000
+    await silent(1)
+    assert.match(lease.line.reason.message, /2 requests in a row/)
   })
 
   it('sends what was written before it closes', async () => {

@@ -168,7 +168,7 @@ const CODES = Object.freeze({
     'Check power, cable, A and B, station number and speed.'
   ],
   STATION_DEMOTED: [
-    'station {station} is silent since {time}; it is asked again {when}',
+    'station {station} was not asked: it has been silent for {lasting}, and is probed {when}',
     'Check its power, cable and station number. It comes back by itself.'
   ],
   INCOMPLETE: [

@@ -1,6 +1,7 @@
 'use strict'
 const { readSettings } = require('./chino-settings')
 const { Device } = require('./device')
+const { Health } = require('./health')
 const { ModbusTalk } = require('./modbus-talk')
 
 /**
@@ -11,7 +12,9 @@ class ChinoRegulator extends Device {
   /** @param {Record<string, any>} options of {@link createChinoRegulator} */
   constructor({ lease, clock, random, ...given }) {
     const settings = readSettings(given)
-    super({ settings, line: lease.line, talk: new ModbusTalk({ lease, settings }), clock, random })
+    const health = new Health({ lease, clock, settings, random })
+    const talk = new ModbusTalk({ lease, health, settings })
+    super({ settings, line: lease.line, talk, health, clock, random })
   }
 }
 
@@ -45,6 +48,9 @@ class ChinoRegulator extends Device {
  * @param {'read'|'write'} [options.access] default read
  * @param {string|string[]} [options.writableRanges] `400001..400010, 001001`: what a message may write to beside writable tags
  * @param {number} [options.writeInterval] ms between two writes of the same words or bits at least, default none
+ * @param {number} [options.demoteAfter] silences in a row after which the station is only probed, default 3; 0: never
+ * @param {number} [options.probeFirst] ms until the first probe, default 5000; each further one after twice as long
+ * @param {number} [options.probeMost] ms between two probes at most, default 60000
  * @param {number} [options.deadline] ms that a request may wait for its turn, default no limit
  * @param {any} [options.clock]
  * @param {() => number} [options.random] 0 to 1

@@ -3,7 +3,7 @@ const { PlcError } = require('../error')
 const { TABLES, describeAddress } = require('../codec/modbus/address')
 const { planTableWrites, planTables } = require('../plan')
 const { modbusNotation } = require('../tag/modbus-notation')
-const { blank, choice, isOn, nameOf, readRanges, wholeNumber } = require('./options')
+const { blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require('./options')
 
 /** The configuration of a CHINO regulator, read and checked before anything is sent. Panel manual, driver settings. */
 
@@ -145,6 +145,7 @@ const readSettings = given => {
   const notation = modbusNotation({ addressMode, tags: given.tags, wordOrder, byteOrder })
   return {
     ...settings,
+    ...readHealth(given),
     protocol: 'modbus',
     framing,
     station,

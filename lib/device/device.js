@@ -16,6 +16,7 @@ class Device {
   #clock
   #random
   #talk
+  #health
   #reader
   #writer
   #subscriptions = new Set()
@@ -27,15 +28,18 @@ class Device {
    * @param {object} options
    * @param {any} options.settings read and checked; what any protocol needs of them is in docs/architecture.md, "Device"
    * @param {any} options.line of the lease: what is remembered about the station, and who is told what becomes of writes
-   * @param {any} options.talk requests over the line: `read(request, { priority })`, `write(take, { priority })`, `counts`, `close()`
+   * @param {any} options.talk requests over the line: `read(request, { priority })`, `write(take, { priority })`, `probing(request)`, `counts`, `close()`
+   * @param {import('./health').Health} options.health
    * @param {any} [options.clock]
    * @param {() => number} [options.random] 0 to 1
    */
-  constructor({ settings, line, talk, clock = realClock, random = Math.random }) {
+  constructor({ settings, line, talk, health, clock = realClock, random = Math.random }) {
     this.#settings = settings
     this.#clock = clock
     this.#random = random
     this.#talk = talk
+    this.#health = health
+    health.serve({ talk, wake: () => this.#subscriptions.forEach(each => each.again()) })
     this.#reader = new Reader({ talk, settings, clock })
     const parse = text => this.item(text)
     this.#writer = new Writer({ talk, reader: this.#reader, line, clock, settings, parse })
@@ -52,6 +56,11 @@ class Device {
   /** `read` or `write`: whether writing is allowed at all. */
   get access() {
     return this.#settings.access
+  }
+
+  /** How the station is: `{ state: 'online'|'suspect'|'demoted', since, probe }`, epoch ms or null. */
+  get health() {
+    return this.#health.now
   }
 
   /** Who it is on its line, for `mixedConflict`: `{ protocol, station, masterIds, name }`. */
@@ -221,6 +230,7 @@ class Device {
     for (const subscription of this.#subscriptions) subscription.stop()
     this.#subscriptions.clear()
     this.#writer.close()
+    this.#health.close()
     this.#talk.close()
   }
 }

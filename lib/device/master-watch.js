@@ -7,6 +7,8 @@
  */
 
 const PROOFS = 3
+/** The latter: it was demoted in the middle of the read. */
+const SILENT = new Set(['TIMEOUT', 'STATION_DEMOTED'])
 
 /**
  * @param {{ memory: { good?: number|null, missed?: boolean, proofs?: number }, found: (id: number) => void }} options
@@ -37,7 +39,7 @@ const createMasterWatch = ({ memory, found }) => {
     note: ({ id, trial, code }) => {
       if (id === undefined) return
       if (code === undefined) answered(id, trial)
-      else if (code === 'TIMEOUT') silent(trial)
+      else if (SILENT.has(code)) silent(trial)
       else if (trial) forget()
     }
   }

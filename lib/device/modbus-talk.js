@@ -52,13 +52,15 @@ const writeOf = (request, functions) => {
 
 class ModbusTalk {
   #lease
+  #health
   #settings
   #memory
   #counts = { requests: 0, answers: 0, exceptions: 0, broadcasts: 0 }
 
-  /** @param {{ lease: any, settings: any }} options */
-  constructor({ lease, settings }) {
+  /** @param {{ lease: any, health: import('./health').Health, settings: any }} options */
+  constructor({ lease, health, settings }) {
     this.#lease = lease
+    this.#health = health
     this.#settings = settings
     this.#memory = memoryOf(lease, settings.station)
   }
@@ -78,7 +80,13 @@ class ModbusTalk {
     const { station, deadline, framing } = this.#settings
     const key = `modbus ${framing} ${request.ask} ${request.base} ${request.count}`
     const label = `${request.ask} ${request.base} ${request.count}`
-    return this.#lease.run(() => this.#reading(request), { station, priority, key, deadline, label })
+    const make = () => ({ request, dialog: this.#reading(request) })
+    return this.#health.run(make, { station, priority, key, deadline, label, request })
+  }
+
+  /** @param {any} request a read of one address @returns {Generator<any, any, Buffer>} sent once */
+  probing(request) {
+    return this.#reading(request, 1)
   }
 
   /**
@@ -91,9 +99,12 @@ class ModbusTalk {
   async write(take, { priority }) {
     const { station, deadline } = this.#settings
     const facts = { writes: 0 }
-    const make = () => this.#writing(take(), facts)
+    const make = () => {
+      const taken = take()
+      return { request: taken.query, dialog: this.#writing(taken, facts) }
+    }
     try {
-      return await this.#lease.run(make, { station, priority, deadline, label: 'write' })
+      return await this.#health.run(make, { station, priority, deadline, label: 'write' })
     } catch (/** @type {any} */ error) {
       // the line knows only that a byte went out: before the first frame that writes it was one that reads
       if (facts.writes > 0 || error.details?.sent !== true) throw error
@@ -101,14 +112,14 @@ class ModbusTalk {
     }
   }
 
-  *#reading(request) {
+  *#reading(request, attempts = this.#settings.attempts) {
     const query = readQuery(request)
     const { units } = this.#settings
     const known = `${query.fn} ${query.base} ${query.count}`
     const { exact } = this.#memory
     const unit = exact.has(known) ? 1 : units[query.fn]
     const facts = { exact: false }
-    const result = yield* this.#counted(readDialog(query, { ...this.#options(), unit, facts }))
+    const result = yield* this.#counted(readDialog(query, { ...this.#options(), attempts, unit, facts }))
     if (facts.exact) {
       if (exact.size >= MOST_EXACT) exact.clear()
       exact.add(known)

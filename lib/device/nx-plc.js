@@ -1,5 +1,6 @@
 'use strict'
 const { Device } = require('./device')
+const { Health } = require('./health')
 const { readSettings } = require('./settings')
 const { Talk } = require('./talk')
 
@@ -11,7 +12,9 @@ class NxPlc extends Device {
   /** @param {Record<string, any>} options of {@link createNxPlc} */
   constructor({ lease, clock, random = Math.random, ...given }) {
     const settings = readSettings(given, lease.line.times?.character ?? 0.52)
-    super({ settings, line: lease.line, talk: new Talk({ lease, settings, random }), clock, random })
+    const health = new Health({ lease, clock, settings, random })
+    const talk = new Talk({ lease, health, settings, random })
+    super({ settings, line: lease.line, talk, health, clock, random })
   }
 }
 
@@ -37,6 +40,9 @@ class NxPlc extends Device {
  * @param {string|string[]} [options.writableRanges] `K0..K63, M10`: what a message may write to beside writable tags
  * @param {Record<string, number>} [options.limits] per frame, see `limitsOf`
  * @param {number} [options.writeInterval] ms between two writes of the same words or bits at least, default none
+ * @param {number} [options.demoteAfter] silences in a row after which the station is only probed, default 3; 0: never
+ * @param {number} [options.probeFirst] ms until the first probe, default 5000; each further one after twice as long
+ * @param {number} [options.probeMost] ms between two probes at most, default 60000
  * @param {number} [options.deadline] ms that a request may wait for its turn, default no limit
  * @param {any} [options.clock]
  * @param {() => number} [options.random] 0 to 1

@@ -48,4 +48,20 @@ const readRanges = (value, notation) => {
 /** @param {unknown} value `true` and its text */
 const isOn = value => value === true || value === 'true'
 
-module.exports = { blank, choice, isOn, nameOf, readRanges, wholeNumber }
+/**
+ * When a silent station is demoted, and how often it is probed then.
+ * @param {Record<string, any>} given
+ * @returns {{ demoteAfter: number, probeFirst: number, probeMost: number }} silences in a row (0: never), ms, ms
+ * @throws {PlcError} BAD_SETTING
+ */
+const readHealth = given => {
+  const demoteAfter = wholeNumber('demoteAfter', given.demoteAfter, { fallback: 3, least: 0, most: 100 })
+  const probeFirst = wholeNumber('probeFirst', given.probeFirst, { fallback: 5000, least: 100, most: 3600000 })
+  const fallback = Math.max(60000, probeFirst)
+  const probeMost = wholeNumber('probeMost', given.probeMost, { fallback, least: 100, most: 3600000 })
+  if (probeMost >= probeFirst) return { demoteAfter, probeFirst, probeMost }
+  const reason = `it is less than the time until the first probe, ${probeFirst}`
+  throw new PlcError('BAD_SETTING', { setting: 'probeMost', value: probeMost, reason })
+}
+
+module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber }

@@ -5,7 +5,7 @@ const { limitsOf } = require('../codec/nx/limits')
 const { nxNotation } = require('../tag/nx-notation')
 const { describeAddress } = require('../codec/nx/address')
 const { planReads, planWrites } = require('../plan')
-const { choice, isOn, nameOf, readRanges, wholeNumber } = require('./options')
+const { choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require('./options')
 
 /** The configuration of an NX PLC, read and checked before anything is sent. */
 
@@ -102,12 +102,13 @@ const readSettings = (given, character) => {
     name: nameOf(given.name, station),
     timeout: wholeNumber('timeout', given.timeout, { fallback: 3000, least: 10, most: 600000 }),
     attempts: wholeNumber('attempts', given.attempts, { fallback: 3, least: 1, most: 20 }),
+    ...readHealth(given),
     masterIds: masterIdsOf(given.masterIds, stations),
     soleMaster: isOn(given.soleMaster),
     access: choice('access', given.access, ['read', 'write']),
     ranges: readRanges(given.writableRanges, notation),
-    deadline: wholeNumber('deadline', given.deadline, { fallback: 0, least: 0, most: 3600000 }),
     writeInterval: wholeNumber('writeInterval', given.writeInterval, { fallback: 0, least: 0, most: 3600000 }),
+    deadline: wholeNumber('deadline', given.deadline, { fallback: 0, least: 0, most: 3600000 }),
     notation,
     limits,
     reasons: REASONS,

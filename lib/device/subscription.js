@@ -39,6 +39,8 @@ class Subscription {
   #running = false
   #stopped = false
   #state = ''
+  #failed = false
+  #again = false
   #overruns = 0
 
   /**
@@ -84,6 +86,13 @@ class Subscription {
     this.#clock.clearTimer(this.#timer)
   }
 
+  /** The station may answer again: what failed is asked for at once, and not after what may be a long interval. */
+  again() {
+    if (this.#stopped) return
+    this.#again = this.#running
+    if (!this.#running && this.#failed) this.#cycle()
+  }
+
   #tick() {
     // from the first one on, so that no delay adds up; after a stall the missed ones are left out
     const done = Math.floor((this.#clock.now() - this.#first + EARLY) / this.#interval)
@@ -110,7 +119,11 @@ class Subscription {
     const state = error ? error.code : stateOf(results)
     const changed = state !== this.#state
     this.#state = state
+    this.#failed = failure !== null
+    const again = this.#again && this.#failed
+    this.#again = false
     this.#callback(results, { failure, changed, ms: this.#clock.now() - start, overruns: this.#overruns })
+    if (again && !this.#stopped) this.#cycle()
   }
 }
 

@@ -16,6 +16,7 @@ const memoryOf = (lease, station) => {
 
 class Talk {
   #lease
+  #health
   #settings
   #memory
   #ids
@@ -23,12 +24,15 @@ class Talk {
   #counts = { requests: 0, answers: 0, nonStandardAcks: 0, repeats: 0, seenStation: /** @type {number|null} */ (null) }
   // a repeat by RR has no ID of its own that tells late from right, so whatever disturbs the line ends it
   #forget = () => void (this.#memory.lastRead = null)
-
   // what a write has come to is no trouble of the line
   #disturbed = ({ event }) => void (event === 'audit' || this.#forget())
-  /** @param {{ lease: any, settings: any, random: () => number }} options random: 0 to 1, for the first master ID */
-  constructor({ lease, settings, random }) {
+
+  /**
+   * @param {{ lease: any, health: import('./health').Health, settings: any, random: () => number }} options random: 0 to 1, for the first master ID
+   */
+  constructor({ lease, health, settings, random }) {
     this.#lease = lease
+    this.#health = health
     this.#settings = settings
     this.#memory = memoryOf(lease, settings.station)
     const { masterIds: ids } = settings
@@ -59,8 +63,9 @@ class Talk {
   async read(query, { priority }) {
     const key = keyOf(query)
     const { station, deadline } = this.#settings
-    const options = { station, priority, key, deadline, label: key }
-    return (await this.#lease.run(() => this.#reading(query, key), options)).values
+    const options = { station, priority, key, deadline, label: key, request: query }
+    const make = () => ({ request: query, dialog: this.#reading(query, key) })
+    return (await this.#health.run(make, options)).values
   }
 
   /**
@@ -73,18 +78,24 @@ class Talk {
     const { station, deadline } = this.#settings
     const make = () => {
       const { query, item, before } = take()
-      return this.#writing(query, { item, before })
+      return { request: query, dialog: this.#writing(query, { item, before }) }
     }
-    return (await this.#lease.run(make, { station, priority, deadline, label: 'write' })).values
+    return (await this.#health.run(make, { station, priority, deadline, label: 'write' })).values
   }
 
-  *#reading(query, key) {
+  /** @param {any} request a read of one address @returns {Generator<any, any, Buffer>} sent once */
+  probing(request) {
+    return this.#reading(request, '', 1)
+  }
+
+  /** @param {any} query @param {string} key '': not to be repeated by an RR @param {number} [attempts] */
+  *#reading(query, key, attempts = this.#settings.attempts) {
     const last = this.#begin()
     const { soleMaster, masterIds: row } = this.#settings
     // with one ID there is nothing to find out
     const trial = row.length > 1 ? this.#watch.trial() : undefined
-    const same = soleMaster && last && last.key === key && last.stray === strayOf(this.#lease)
-    const options = { ...this.#options(trial), again: same ? last.master : undefined }
+    const same = soleMaster && key !== '' && last && last.key === key && last.stray === strayOf(this.#lease)
+    const options = { ...this.#options(trial), attempts, again: same ? last.master : undefined }
     const result = yield* this.#watched(readDialog(query, options), options)
     this.#note(result)
     if (soleMaster) this.#memory.lastRead = { key, master: result.master, stray: strayOf(this.#lease) }

@@ -55,7 +55,7 @@ class Driver {
   #announce({ station, step, latenessBound }) {
     if (!step.match) return
     const bound = latenessBound || this.#least.latenessBound
-    this.#quarantine.asks(station, { timeout: step.timeout, latenessBound: bound })
+    this.#quarantine.asks(station, { timeout: timeOf(step), latenessBound: bound })
   }
 
   #go(run) {
@@ -83,6 +83,7 @@ class Driver {
       if (error.code !== 'CRC_ERROR') this.#unanswered(run, { ...facts, seen: answer })
       this.#host.troubled(error)
     } else if (step.match) {
+      this.#recorder.stats.waited(station, facts.wait)
       this.#quarantine.answered(station, answer)
       this.#host.answered(station)
     }
@@ -93,7 +94,8 @@ class Driver {
 
   #unanswered({ station, step }, facts) {
     if (!facts?.sent || !step.match) return
-    this.#quarantine.failed({ station, match: step.match, timeout: step.timeout, due: facts.due, seen: facts.seen })
+    const { due, seen } = facts
+    this.#quarantine.failed({ station, match: step.match, timeout: timeOf(step), due, seen })
   }
 
   /** The wire broke: the step on it ends with this error, and its conversation may still say what that means. */
@@ -126,5 +128,8 @@ class Driver {
     this.pump()
   }
 }
+
+/** What the answer may take and still be in time, ms. */
+const timeOf = ({ timeout, lateAfter }) => lateAfter ?? timeout
 
 module.exports = { Driver }

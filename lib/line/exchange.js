@@ -67,8 +67,8 @@ class Exchange {
   /**
    * @param {any} step of a conversation
    * @param {{ gap: number, station: any, sent: () => void, done: (error: any, answer: Buffer, facts: any) => void }} options
-   *   facts: `{ due, sent, ms, rest }` — when the answer should have begun; whether a byte went out; ms since the end of
-   *   sending; what came behind the answer
+   *   facts: `{ due, sent, ms, wait, rest }` — when the answer should have begun; whether a byte went out; ms since the end of sending, and
+   *   from there to the first byte; what came behind the answer
    */
   start(step, { gap, station, sent, done }) {
     const now = this.#clock.now()
@@ -272,7 +272,12 @@ class Exchange {
     if (!job) return null
     this.#idle()
     const sent = job.phase === 'awaiting'
-    return { sent, due: this.#sendEnd + (job.step.timeout ?? 0), seen: this.#rx.takeAll() }
+    return { sent, due: this.#dueEnd(job), seen: this.#rx.takeAll() }
+  }
+
+  /** Until when the answer to a step is in time: who probes waits shorter. */
+  #dueEnd({ step }) {
+    return this.#sendEnd + (step.lateAfter ?? step.timeout ?? 0)
   }
 
   #idle() {
@@ -287,8 +292,9 @@ class Exchange {
     this.#idle()
     if (error) this.#repeats.failed()
     const rest = this.#rx.takeAll()
-    const due = this.#sendEnd + (job.step.timeout ?? 0)
-    job.done(error, bytes, { due, rest, sent: job.phase === 'awaiting', ms: this.#clock.now() - this.#sendEnd })
+    const ms = this.#clock.now() - this.#sendEnd
+    const wait = Math.max(0, ms - bytes.length * this.#times.character)
+    job.done(error, bytes, { due: this.#dueEnd(job), rest, sent: job.phase === 'awaiting', ms, wait })
   }
 }
 

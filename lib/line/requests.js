@@ -30,6 +30,7 @@ class Requests {
     this.#settings = settings
     this.#host = host
     this.#recorder = recorder
+    recorder.stats.remember(memories)
     const late = (fact, frame) => this.#late(fact, frame)
     const awake = () => this.#driver.pump()
     const hasPast = settings.transport !== 'simulated'

@@ -1,5 +1,7 @@
 'use strict'
 
+const { Waits } = require('./waits')
+
 const STATION = ['queries', 'answers', 'timeouts', 'incomplete', 'crcErrors', 'late', 'overruns']
 const LISTENING = ['messagesOut', 'messagesIn', 'damagedMessages', 'tornWrites', 'stops']
 const BYTES = ['skippedBytes', 'strayBytes', 'echoes', 'queueFull', 'bytesOut', 'bytesIn', 'reconnects']
@@ -11,6 +13,13 @@ const zeros = names => Object.fromEntries(names.map(name => [name, 0]))
 class Stats {
   #line = { ...zeros(LINE), busy: 0 }
   #stations = new Map()
+  /** What is remembered of each station, over redeploys. @type {Map<any, any>} */
+  #memories = new Map()
+
+  /** @param {Map<any, any>} memories per station, kept by the pool */
+  remember(memories) {
+    this.#memories = memories
+  }
 
   /** @param {string} name @param {any} [station] counted for it as well */
   count(name, station = null) {
@@ -32,6 +41,14 @@ class Stats {
     latency.sum += ms
   }
 
+  /** @param {any} station @param {number} ms from the computed end of sending to the first byte of the answer */
+  waited(station, ms) {
+    const memory = this.#memories.get(station)
+    if (!memory) return
+    memory.waits ??= new Waits()
+    memory.waits.add(ms)
+  }
+
   #of(station) {
     let entry = this.#stations.get(station)
     if (!entry) {
@@ -41,12 +58,22 @@ class Stats {
     return entry
   }
 
-  /** A copy: `{ queries, …, busy, stations: { [station]: { queries, …, latency: { min, mean, max } | null } } }`. */
+  /**
+   * A copy: `{ queries, …, busy, stations: { [station]: { queries, …, latency: { min, mean, max, p99 } | null, health, since } } }`; health and
+   * since (epoch ms) are what the devices left in the station's memory.
+   */
   snapshot() {
     const stations = {}
     for (const [station, { counts, min, max, sum }] of this.#stations) {
-      const latency = counts.answers > 0 ? { min, mean: sum / counts.answers, max } : null
-      stations[String(station)] = { ...counts, latency }
+      const { waits, health } = this.#memories.get(station) ?? {}
+      const p99 = waits?.p99 ?? null
+      const latency = counts.answers > 0 ? { min, mean: sum / counts.answers, max, p99 } : null
+      stations[String(station)] = {
+        ...counts,
+        latency,
+        health: health?.state ?? 'online',
+        since: health?.since ?? null
+      }
     }
     return { ...this.#line, stations }
   }

@@ -33,7 +33,7 @@ describe('NX PLC: a station that answers to one master ID only', () => {
   })
 
   it('its last ID is not tried again while an answer to it may still come', async () => {
-    const { events, read } = start({})
+    const { events, read } = start({}, { demoteAfter: 0 })
     const masters = () =>
       b.lease.line.trace().flatMap(({ dir, bytes }) => (dir === 'out' ? [parseInt(bytes.slice(2, 4), 16)] : []))
     assert.equal(await read(), 'good')
@@ -45,7 +45,7 @@ describe('NX PLC: a station that answers to one master ID only', () => {
   })
 
   it('is not suspected because it was switched off for a while', async () => {
-    const { events, read } = start({})
+    const { events, read } = start({}, { demoteAfter: 0 })
     const codes = [await read()]
     for (let outage = 0; outage < 3; outage++) {
       b.wire.setOff(1, true)

@@ -84,7 +84,7 @@ describe('NX PLC: polling', () => {
     await b.clock.advance(10000)
     b.wire.setOff(1, false)
     await b.clock.advance(10000)
-    assert.deepEqual(news, ['good,good', 'TIMEOUT', 'good,good'])
+    assert.deepEqual(news, ['good,good', 'TIMEOUT', 'STATION_DEMOTED', 'good,good'])
   })
 
   it('one bad item of several is no failure of the cycle, and a cycle has its duration', async () => {

@@ -40,8 +40,8 @@ const wholeGap = gap => (Number(gap) > 0 ? Math.max(1, Math.floor(Number(gap))) 
  */
 const makeDevice = (lease, given, changes = {}) => {
   const protocol = changes.protocol ?? given.protocol
-  // a broken row of the tag table must not spoil a test of the connection
-  const own = { attempts: 1, access: 'read', tags: [], gap: wholeGap(given.gap) }
+  // a broken row of the tag table must not spoil a test of the connection; who is demoted is asked all the same
+  const own = { demoteAfter: 0, attempts: 1, access: 'read', tags: [], gap: wholeGap(given.gap) }
   return MAKERS[protocol]({ ...given, ...own, ...changes, protocol, lease })
 }
 

@@ -1,0 +1,29 @@
+'use strict'
+
+const MOST = 200
+
+/** How long a station took lately until its first byte came, ms: what its timeout must cover. Bounded. */
+class Waits {
+  #rows = new Float64Array(MOST)
+  #count = 0
+
+  /** How many are known, 200 at most. */
+  get size() {
+    return Math.min(this.#count, MOST)
+  }
+
+  /** @param {number} ms */
+  add(ms) {
+    this.#rows[this.#count++ % MOST] = ms
+  }
+
+  /** What 99 of 100 answers did not exceed, ms; null: there was none. */
+  get p99() {
+    const { size } = this
+    if (size === 0) return null
+    const sorted = this.#rows.slice(0, size).sort()
+    return sorted[Math.ceil(size * 0.99) - 1]
+  }
+}
+
+module.exports = { Waits }

@@ -270,25 +270,48 @@ const CODES = Object.freeze({
   NO_CONFIGURATION: ['{node} has no {what}', 'Choose one in the dialog of the node.']
 })
 
-/** Elements of a list in an error's text: one of millions must not cost a second and a gigabyte. */
+/** Elements of a list or an object in an error's text: one of millions must not cost a second and a gigabyte. */
 const MOST_SHOWN = 50
+const MOST_TEXT = 200
 
-const shortened = value => {
-  const isLong = (Array.isArray(value) || ArrayBuffer.isView(value)) && /** @type {any} */ (value).length > MOST_SHOWN
-  return isLong ? Array.from({ length: MOST_SHOWN }, (_, n) => value[n]) : value
+const firstPairs = object => {
+  const pairs = []
+  for (const key in object) if (Object.hasOwn(object, key) && pairs.push([key, object[key]]) >= MOST_SHOWN) break
+  return Object.fromEntries(pairs)
 }
 
-const shown = value => {
+const shortened = value => {
+  if (Array.isArray(value) || ArrayBuffer.isView(value)) {
+    const isLong = /** @type {any} */ (value).length > MOST_SHOWN
+    return isLong ? Array.from({ length: MOST_SHOWN }, (_, n) => value[n]) : value
+  }
+  return value !== null && typeof value === 'object' ? firstPairs(value) : value
+}
+
+/** Every list and object takes from the same allowance: they may be nested. */
+const asJson = value => {
+  let left = MOST_SHOWN
+  return JSON.stringify(value, (_, inner) => (left-- > 0 ? shortened(inner) : undefined)) ?? String(value)
+}
+
+const textOf = value => {
   if (value === undefined) return '?'
   if (typeof value === 'string') return value
   try {
-    return JSON.stringify(shortened(value), (_, inner) => shortened(inner)) ?? String(value)
+    return asJson(value)
   } catch {
     return typeof value // BigInt, or an object that contains itself: an error's text must not fail
   }
 }
 
-const fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]).slice(0, 200))
+/** What would move the cursor, turn the text round or begin a line of its own in a log. */
+// eslint-disable-next-line no-control-regex
+const UNSEEN = /[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]/g
+const escaped = character => `\\u${character.charCodeAt(0).toString(16).padStart(4, '0')}`
+
+const shown = value => textOf(value).slice(0, MOST_TEXT).replace(UNSEEN, escaped)
+
+const fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]))
 
 /**
  * An error with a code from {@link CODES}. Compare codes, never texts.
@@ -328,4 +351,22 @@ const isRefusal = error => typeof error?.code === 'string' && REFUSAL.test(error
 const causeOf = ({ message, remedy }) =>
   message.endsWith(`. ${remedy}`) ? message.slice(0, -remedy.length - 2) : message
 
-module.exports = { CODES, PlcError, causeOf, isRefusal }
+/** Whether it is one of ours; what was thrown may be anything, also a proxy that throws when it is asked. @param {any} error @returns {boolean} */
+const isPlcError = error => {
+  try {
+    return error instanceof PlcError
+  } catch {
+    return false
+  }
+}
+
+/** What a thrown thing says. @param {any} error */
+const reasonOf = error => {
+  try {
+    return String(error?.message ?? error)
+  } catch {
+    return 'it does not say why'
+  }
+}
+
+module.exports = { CODES, PlcError, causeOf, isPlcError, isRefusal, reasonOf }

@@ -24,7 +24,7 @@ const { modbusNotation } = require('./tag/modbus-notation')
 const { nxNotation } = require('./tag/nx-notation')
 const { parseType } = require('./tag/types')
 const { createReport } = require('./output/report')
-const { entriesOf, itemsOf } = require('./output/entries')
+const { entriesOf, itemsOf, payloadOf } = require('./output/entries')
 const { messagesOf } = require('./output/messages')
 
 module.exports = {
@@ -60,6 +60,7 @@ module.exports = {
   parseAddress,
   parseItem,
   parseType,
+  payloadOf,
   tagsFromCsv,
   tagsToCsv,
   toBufferMemory

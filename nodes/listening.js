@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError } = require('../lib/index.js')
+const { PlcError, payloadOf } = require('../lib/index.js')
 const { withCode } = require('./faults')
 const { byOf } = require('./by')
 const { LISTENERS } = require('./listening-rules')
@@ -17,17 +17,19 @@ const guard = (msg, { settings: { access, acceptRetained }, deviceNode: { label 
   return retained && !acceptRetained ? new PlcError('RETAINED_REFUSED', { item: label }) : null
 }
 
-const payloadOf = msg => (Object.hasOwn(msg, 'payload') ? msg.payload : undefined)
-
 const attempt = async (session, msg) => {
   const by = byOf(session.node, msg)
-  const refused = guard(msg, session)
-  if (refused) {
-    session.device.refused(payloadOf(msg), refused, { by })
-    return refusal(refused)
+  let payload
+  try {
+    payload = payloadOf(msg)
+    const refused = guard(msg, session)
+    if (refused) throw refused
+  } catch (/** @type {any} */ error) {
+    session.device.refused(payload, error, { by })
+    return refusal(error)
   }
   session.display.update({ phase: 'sending' })
-  const write = await session.device.send(payloadOf(msg), { by })
+  const write = await session.device.send(payload, { by })
   return { ...write, ms: Math.round(write.ms) }
 }
 

@@ -27,7 +27,7 @@ const HOSTILE_RUNS = {
     const seconds = whole(count, 'seconds')
     const { TARGETS, flood } = require(path.join(support, 'garbage.js'))
     const failed = []
-    for (const [target, { worst }] of Object.entries(TARGETS).filter(([target]) => target.includes(name))) {
+    for (const [target, { worst }] of Object.entries(TARGETS).filter(([each]) => each.includes(name))) {
       for (const transport of ['tcp', 'pty']) {
         for (const pattern of ['noise', ...worst]) {
           const run = await flood({ target, transport, pattern, seconds })

@@ -5,6 +5,7 @@ const { bytesToValue, valueToBytes } = require('../codec/melsec/convert')
 const { encodeMessage } = require('../codec/melsec/message')
 const { realClock } = require('../line')
 const { createAudit } = require('./audit')
+const { asGivenError } = require('./failure')
 const { readSettings } = require('./c24-settings')
 const { C24Talk, outcomeOf } = require('./c24-talk')
 
@@ -159,7 +160,7 @@ class C24Port {
     try {
       bytes = this.#encode(value)
     } catch (error) {
-      return outcomeOf('refused', error, nothing)
+      return outcomeOf('refused', asGivenError(error), nothing)
     }
     if (this.#talk) return this.#talk.send(bytes, deadline)
     try {

@@ -1,6 +1,7 @@
 'use strict'
 const { PlcError } = require('../error')
 const { PRIORITY, realClock } = require('../line')
+const { elementsOf } = require('../tag/convert')
 const { distinctNames, parseItem, splitType } = require('../tag/item')
 const { checkTotal, pointsOf, resultsOf, widthOf } = require('./points')
 const { Reader } = require('./reader')
@@ -136,7 +137,7 @@ class Device {
     if (items.length === 0) throw new PlcError('BAD_ITEMS', { reason: 'it is empty' })
     if (items.length > MOST_ITEMS)
       throw new PlcError('TOO_MANY', { count: items.length, unit: 'items', most: MOST_ITEMS })
-    const parsed = Array.from(items, text => this.item(text))
+    const parsed = elementsOf(items).map(text => this.item(text))
     checkTotal(parsed)
     return distinctNames(parsed)
   }

@@ -1,5 +1,5 @@
 'use strict'
-const { PlcError, isRefusal } = require('../error')
+const { PlcError, isPlcError, isRefusal, reasonOf } = require('../error')
 
 /** What an error says about a station. Pure. */
 
@@ -11,6 +11,16 @@ const isStationFailure = error => !isRefusal(error) || GATEWAY.has(error.code)
 
 /** @param {any} error @param {number} [station] @returns {PlcError} */
 const asPlcError = (error, station) =>
-  error instanceof PlcError ? error : new PlcError('BAD_ANSWER', { station, reason: error?.message, cause: error })
+  isPlcError(error) ? error : new PlcError('BAD_ANSWER', { station, reason: reasonOf(error), cause: error })
 
-module.exports = { asPlcError, isStationFailure }
+/**
+ * An error that came while what a user or a message gave was looked at: nothing was sent, so no station had a word in it.
+ * @param {any} error @returns {PlcError}
+ */
+const asGivenError = error => {
+  if (isPlcError(error)) return error
+  const reason = `it cannot be looked at: ${reasonOf(error)}`
+  return new PlcError('BAD_VALUE', { item: 'what is written', value: 'what was given', reason })
+}
+
+module.exports = { asGivenError, asPlcError, isStationFailure }

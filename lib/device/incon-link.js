@@ -1,10 +1,11 @@
 'use strict'
+const { isUtf8 } = require('node:buffer')
 const { PlcError } = require('../error')
 const { nextNumber, START, unseal } = require('../codec/incon/check')
 const { encodeLine, inconFraming } = require('../codec/incon/message')
 const { realClock } = require('../line')
 const { createAudit } = require('./audit')
-const { asPlcError } = require('./failure')
+const { asGivenError, asPlcError } = require('./failure')
 const { readSettings } = require('./incon-settings')
 const { talkOf } = require('./incon-talk')
 
@@ -120,12 +121,16 @@ class InconLink {
     this.#stats.received++
     this.#stats.lost += message.lost ?? 0
     const told = this.#told(message, timestamp)
+    if (told.reason === 'encoding') this.#stats.damaged++
     for (const callback of [...this.#listeners]) callback(told)
   }
 
   #told({ kind, bytes, complete, reason, number, lost }, timestamp) {
     const { encoding, checked } = this.#settings
     const text = bytes.toString(encoding === 'ascii' ? 'latin1' : encoding)
+    // what is no character shows as a replacement: then the text is not what was sent
+    const valid = encoding !== 'utf8' || isUtf8(bytes)
+    const why = complete && !valid ? 'encoding' : reason
     // where a check says no, nobody must take it for a value
     const value = checked && kind === 'damaged' ? null : text
     return {
@@ -133,9 +138,9 @@ class InconLink {
       text,
       bytes,
       count: bytes.length,
-      complete,
+      complete: complete && valid,
       timestamp,
-      ...(reason ? { reason } : {}),
+      ...(why ? { reason: why } : {}),
       ...(checked && complete ? { number, lost } : {})
     }
   }
@@ -189,7 +194,7 @@ class InconLink {
     try {
       bytes = encodeLine(value, { ...this.#settings, number: memory.number })
     } catch (error) {
-      return failure('refused', error)
+      return failure('refused', asGivenError(error))
     }
     if (this.#talk) return this.#converse(bytes, deadline)
     if (this.#settings.checked) memory.number = nextNumber(memory.number)
@@ -254,7 +259,7 @@ const createInconLink = options => new InconLink(options)
  * @property {Buffer} bytes
  * @property {number} count bytes
  * @property {boolean} complete one whole line, as far as can be known
- * @property {import('../codec/incon/message').Reason} [reason] why it is not
+ * @property {import('../codec/incon/message').Reason|'encoding'} [reason] why it is not; encoding: some of its bytes are no characters
  * @property {number} timestamp epoch ms
  * @property {number|null} [number] checked format
  * @property {number} [lost] checked format: lines that are missing before this one

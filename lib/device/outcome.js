@@ -1,6 +1,6 @@
 'use strict'
 const { PlcError, isRefusal } = require('../error')
-const { asPlcError } = require('./failure')
+const { asGivenError } = require('./failure')
 
 /**
  * What became of a write. Pure.
@@ -28,13 +28,14 @@ const plain = ({ item, value }) => ({ item: item?.text ?? String(item), name: it
 
 /**
  * Nothing was sent.
- * @param {any} error
+ * @param {any} caught
  * @param {{ item: any, value: any }[]} entries
  * @param {'refused'|'failed'} outcome
  * @returns {Outcome & { error: any }}
  */
-const unsent = (error, entries, outcome = 'refused') => {
-  const { code, message: text } = asPlcError(error)
+const unsent = (caught, entries, outcome = 'refused') => {
+  const error = asGivenError(caught)
+  const { code, message: text } = error
   return {
     outcome,
     items: entries.map(entry => ({ ...plain(entry), outcome: 'notSent' })),

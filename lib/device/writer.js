@@ -36,9 +36,15 @@ const checkPoints = entries => {
 
 /** What was asked for, as far as it can be told. */
 const given = entries => {
-  const list = Array.isArray(entries) ? entries.slice(0, MOST_ENTRIES) : []
-  return list.map(entry => ({ item: entry?.item, value: entry?.value }))
+  try {
+    return entries.slice(0, MOST_ENTRIES).map(({ item, value }) => ({ item: nameOf(item), value }))
+  } catch {
+    return []
+  }
 }
+
+/** Only what cannot fail when it becomes text. */
+const nameOf = item => (['object', 'function', 'symbol'].includes(typeof item) ? `(${typeof item})` : item)
 
 class Writer {
   #clock

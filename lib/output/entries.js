@@ -1,6 +1,6 @@
 'use strict'
-const { PlcError } = require('../error')
-const { absurdity } = require('../tag/convert')
+const { PlcError, isPlcError, reasonOf } = require('../error')
+const { absurdity, elementsOf } = require('../tag/convert')
 
 /** Incoming messages -> what to write, what to read. Pure. Messages are hostile until proven otherwise. */
 
@@ -26,7 +26,7 @@ const checkValue = (item, value) => {
   if (Array.isArray(value) && value.length > MOST_VALUES) {
     throw new PlcError('TOO_MANY', { count: value.length, unit: 'values to write', most: MOST_VALUES })
   }
-  const values = Array.isArray(value) ? Array.from(value) : [value]
+  const values = Array.isArray(value) ? elementsOf(value) : [value]
   if (values.length === 0) throw new PlcError('BAD_VALUE', { item, value: [], reason: 'it is empty' })
   for (const one of values) {
     const absurd = absurdity(one)
@@ -39,6 +39,30 @@ const checkValue = (item, value) => {
 }
 
 /**
+ * What comes in a message may throw whatever it likes when it is looked at: a proxy, a getter.
+ * @template T
+ * @param {() => T} look @param {(reason: string) => PlcError} refusal @returns {T}
+ */
+const readably = (look, refusal) => {
+  try {
+    return look()
+  } catch (error) {
+    throw isPlcError(error) ? error : refusal(reasonOf(error))
+  }
+}
+
+const unreadable = reason =>
+  new PlcError('BAD_VALUE', { item: 'the message', value: 'its payload', reason: `it cannot be looked at: ${reason}` })
+
+/**
+ * The payload of a message that is sent as it is.
+ * @param {Record<string, any>} msg only its own `payload` counts
+ * @returns {any} undefined: it has none
+ * @throws {PlcError} BAD_VALUE: it cannot be looked at
+ */
+const payloadOf = msg => readably(() => own(msg, 'payload'), unreadable)
+
+/**
  * The values that a message writes: its payload to the fixed target; or the pairs of an object payload; or the payload to
  * the item that `topic` names.
  * @param {Record<string, any>} msg only its own `payload` and `topic` count
@@ -46,7 +70,9 @@ const checkValue = (item, value) => {
  * @returns {{ item: string, value: any }[]} at most 1000
  * @throws {PlcError} NOTHING_TO_WRITE, BAD_VALUE (empty, null, NaN, an object), TOO_MANY
  */
-const entriesOf = (msg, { target = '' } = {}) => {
+const entriesOf = (msg, options = {}) => readably(() => read(msg, options), unreadable)
+
+const read = (msg, { target = '' }) => {
   if (msg === null || typeof msg !== 'object') throw new PlcError('NOTHING_TO_WRITE', { reason: 'there is no message' })
   const payload = own(msg, 'payload')
   if (target.trim() !== '') return [checkValue(target.trim(), payload)]
@@ -83,13 +109,19 @@ const bad = reason => new PlcError('BAD_ITEMS', { reason })
  * @returns {string[]} 1 to 1000 texts, not parsed yet
  * @throws {PlcError} BAD_ITEMS, TOO_MANY
  */
-const itemsOf = given => {
+const itemsOf = given =>
+  readably(
+    () => listed(given),
+    error => bad(`it cannot be looked at: ${error}`)
+  )
+
+const listed = given => {
   if (typeof given === 'string' && given.length > MOST_TEXT) throw bad('the text is too long')
   const list = typeof given === 'string' ? given.split(/[,;\r\n]/).filter(text => text.trim() !== '') : given
   if (!Array.isArray(list)) throw bad(given === undefined ? 'it is missing' : `it is of the type ${typeof given}`)
   if (list.length === 0) throw bad('it is empty')
   if (list.length > MOST_ITEMS) throw new PlcError('TOO_MANY', { count: list.length, unit: 'items', most: MOST_ITEMS })
-  return Array.from(list, (text, index) => {
+  return elementsOf(list).map((text, index) => {
     if (typeof text === 'number') throw bad(inQuotes(`entry ${index + 1}`, text))
     if (typeof text !== 'string') throw bad(`number ${index + 1} is no text`)
     if (text.trim() === '') throw bad(`number ${index + 1} is empty`)
@@ -98,4 +130,4 @@ const itemsOf = given => {
   })
 }
 
-module.exports = { entriesOf, itemsOf }
+module.exports = { entriesOf, itemsOf, payloadOf }

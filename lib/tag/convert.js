@@ -15,6 +15,13 @@ const BOOLEANS = new Map([
   ['0', false]
 ])
 
+/**
+ * The elements of a list, by their places: what it says of its own iteration does not count, that may never end.
+ * @param {ArrayLike<any>} list
+ * @returns {any[]}
+ */
+const elementsOf = list => Array.from({ length: list.length }, (_, n) => list[n])
+
 /** Why a value can never be written, or null. */
 const absurdity = value => {
   if (value === null || value === undefined) return 'it is empty'
@@ -85,4 +92,4 @@ const toText = (value, item, most) => {
   return text
 }
 
-module.exports = { absurdity, toBoolean, toNumber, toText }
+module.exports = { absurdity, elementsOf, toBoolean, toNumber, toText }

@@ -1,6 +1,6 @@
 'use strict'
 const { PlcError } = require('../error')
-const { absurdity, toNumber } = require('./convert')
+const { absurdity, elementsOf, toNumber } = require('./convert')
 
 /** Raw words and bits of an item <-> the value that a message carries: types, scale, offset, limits. Pure. */
 
@@ -100,7 +100,7 @@ const encodeValue = (item, value) => {
   if (!Array.isArray(value) || value.length !== item.count) {
     throw new PlcError('BAD_VALUE', { item: item.text, value, reason: `it takes an array of ${item.count} values` })
   }
-  return Array.from(value, one => encodeOne(item, one))
+  return elementsOf(value).map(one => encodeOne(item, one))
 }
 
 module.exports = { decodeValue, encodeValue }

@@ -128,7 +128,8 @@ const bytesToWords = bytes =>
 
 const isList = value => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView))
 
-const listOf = value => (isList(value) ? Array.from(value) : null)
+/** By their places: what a list says of its own iteration may never end. */
+const listOf = value => (isList(value) ? Array.from({ length: value.length }, (_, n) => value[n]) : null)
 
 /** Bytes that a value needs at least: before anything of it is copied, since an array may be long on paper only. */
 const leastBytes = (value, format) => {

@@ -106,11 +106,13 @@ const EVENTS = {
 function createJudge(red, plant) {
   const seen = Object.fromEntries([...NAMES, ...LISTENERS].map(name => [name, { count: 0, at: performance.now() }]))
   const wrong = []
+  const told = {}
   const longest = Object.fromEntries(Object.keys(seen).map(name => [name, 0]))
   const look = () => {
     for (const { id, value } of red.debug.splice(0)) {
       // warnings of the other nodes stand in the sidebar as well
       const name = id?.startsWith('debug-') ? id.slice(6) : ''
+      if (name === 'events') told[value.event] = (told[value.event] ?? 0) + 1
       const entry = seen[name]
       if (!entry) continue
       const now = performance.now()
@@ -124,6 +126,7 @@ function createJudge(red, plant) {
   return {
     wrong,
     seen,
+    told,
     counts: () => Object.fromEntries(Object.entries(seen).map(([name, { count }]) => [name, count])),
     /** The longest time (s) that each of them was silent. */
     longest,
@@ -231,7 +234,15 @@ async function faultHour({ minutes, seed = 1, every = 60000, rest = [3000, 15000
     const recovered = Math.round(performance.now() - ended)
     const ownFaults = Object.values(plant.lines).map(({ faults }) => faults.counts)
     return {
-      ...{ minutes, seed, values: judge.counts(), events: events.counts, answers: ownFaults, wrong: judge.wrong },
+      ...{
+        minutes,
+        seed,
+        values: judge.counts(),
+        events: events.counts,
+        told: judge.told,
+        answers: ownFaults,
+        wrong: judge.wrong
+      },
       ...{ longest: judge.longest, recovered, growth: growthOf(samples), ended: await red.stop() }
     }
   } finally {

@@ -51,7 +51,7 @@ const simulated = (line, options) => {
   return createLine({ stations, baudRate: BAUD, quiet: true, turnaround: 3, ...options })
 }
 
-const debugOf = (name, wiresFrom) => ({
+const debugOf = name => ({
   id: `debug-${name}`,
   type: 'debug',
   z: 'tab',
@@ -59,8 +59,7 @@ const debugOf = (name, wiresFrom) => ({
   tosidebar: true,
   complete: 'payload',
   targetType: 'msg',
-  wires: [],
-  ...wiresFrom
+  wires: []
 })
 
 const injectOf = (name, seconds) => ({
@@ -109,8 +108,23 @@ function flowOf(settings, { turn = 0, interval = 250, writing = 1000 } = {}) {
   const listening = listeningFlow(settings, { turn }).map(node =>
     node.type === 'inject' ? { ...node, repeat: String(writing / 1000) } : node
   )
+  const monitors = ['serial', 'tcp'].map(line => ({
+    id: `monitor-${line}`,
+    type: 'plc-monitor',
+    z: 'tab',
+    line: `line-${line}`,
+    interval: 2000 + (turn & 4),
+    wires: [['debug-events'], [], []]
+  }))
   const tab = { id: 'tab', type: 'tab', label: 'plant' }
-  return [tab, ...lines, ...NAMES.flatMap(name => deviceFlow(name, { turn, interval, writing })), ...listening]
+  return [
+    tab,
+    ...lines,
+    ...monitors,
+    debugOf('events'),
+    ...NAMES.flatMap(name => deviceFlow(name, { turn, interval, writing })),
+    ...listening
+  ]
 }
 
 /**

@@ -75,6 +75,7 @@ const OPTIONS = {
   'byte-rate': { type: 'string', argument: 'N', text: 'the same in bytes/s', only: ['c24'] },
   scan: { type: 'string', argument: 'MS', text: 'from one scan of its PLC to the next (10)', only: ['incon'] },
   checked: { type: 'boolean', text: 'lines with number and check', only: ['incon'] },
+  acknowledge: { type: 'boolean', text: 'these, acknowledged and repeated', only: ['incon'] },
   clears: {
     type: 'string',
     argument: 'NAME',

@@ -37,6 +37,7 @@ const READ = {
   incon: values => ({
     scan: whole(values, 'scan', { standard: 10, least: 1, most: 1000 }),
     checked: values.checked ?? false,
+    acknowledge: values.acknowledge ?? false,
     clears: oneOf(values, 'clears', ['finish', 'length']),
     answer: oneOf(values, 'answer', ['none', 'echo']),
     events: EVENTS,

@@ -151,6 +151,37 @@ function createRealClock() {
 }
 
 /**
+ * The clock of the machine for a simulation that can be given up: after `stop` none of its timers runs.
+ * @returns {{ now(): number, wall(): number, setTimer(fn: () => void, ms: number): any, clearTimer(timer: any): void, stop(): void }}
+ */
+function createStoppableClock() {
+  const clock = createRealClock()
+  const timers = new Set()
+  let stopped = false
+  return {
+    ...clock,
+    setTimer(fn, ms) {
+      if (stopped) return null
+      const timer = clock.setTimer(() => {
+        timers.delete(timer)
+        fn()
+      }, ms)
+      timers.add(timer)
+      return timer
+    },
+    clearTimer(timer) {
+      timers.delete(timer)
+      clock.clearTimer(timer)
+    },
+    stop() {
+      stopped = true
+      timers.forEach(clock.clearTimer)
+      timers.clear()
+    }
+  }
+}
+
+/**
  * @typedef {object} VirtualClock
  * @property {() => number} now monotonic ms, with fractions
  * @property {() => number} wall epoch ms
@@ -166,4 +197,4 @@ function createRealClock() {
  * @property {() => Promise<void>} drain until no timer is left; SIM_DEADLOCK if declared work is still open then
  */
 
-module.exports = { createVirtualClock, createRealClock }
+module.exports = { createVirtualClock, createRealClock, createStoppableClock }

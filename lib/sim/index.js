@@ -8,6 +8,7 @@ module.exports = {
   ...require('./chino-regulator'),
   ...require('./melsec-c24'),
   ...require('./incon-controller'),
+  ...require('./press'),
   ...require('./line'),
   ...require('./peer'),
   ...require('./wire'),

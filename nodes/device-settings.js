@@ -19,6 +19,7 @@ const nxSettings = (settings, { name, stations, gap }) => ({
   tags: settings.tags,
   access: settings.access,
   writableRanges: settings.writableRanges,
+  writeInterval: settings.writeInterval,
   limits: Object.fromEntries(LIMITS.map(limit => [limit, settings[limit]])),
   stations
 })

@@ -80,6 +80,7 @@ const PROPERTIES = {
     soleMaster: flag(),
     access: choice('read', 'read', 'write'),
     writableRanges: text(),
+    writeInterval: number(0, 0, 3600000),
     readWords: number(128, 1, 128),
     writeWords: number(64, 1, 127),
     readBits: number(255, 1, 255),
@@ -111,6 +112,7 @@ const PROPERTIES = {
     turnaround: number(100, 0, 10000),
     access: choice('read', 'read', 'write'),
     writableRanges: text(),
+    writeInterval: number(0, 0, 3600000),
     tags: list()
   },
   'nx-read': { name: text(), plc: node(), ...READING },

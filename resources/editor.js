@@ -78,6 +78,7 @@ var nxlineSerialPlc = (() => {
           soleMaster: flag(),
           access: choice("read", "read", "write"),
           writableRanges: text(),
+          writeInterval: number(0, 0, 36e5),
           readWords: number(128, 1, 128),
           writeWords: number(64, 1, 127),
           readBits: number(255, 1, 255),
@@ -109,6 +110,7 @@ var nxlineSerialPlc = (() => {
           turnaround: number(100, 0, 1e4),
           access: choice("read", "read", "write"),
           writableRanges: text(),
+          writeInterval: number(0, 0, 36e5),
           tags: list()
         },
         "nx-read": { name: text(), plc: node(), ...READING },
@@ -430,10 +432,22 @@ var nxlineSerialPlc = (() => {
           "{station} did not take the message: NAK {nak}, {reason}",
           "Look the code up in the manual of the module; send it again when the cause is gone."
         ],
+        PEER_RESTARTED: [
+          "{station} has started anew: whether it had taken the line before is not known",
+          "Look at the controller before you send the line again."
+        ],
+        OWN_ECHO: [
+          "{line} hears what it sends, so that nothing it hears can be taken for an acknowledgement",
+          'Set Echo of the line to "on": the adapter hears itself.'
+        ],
         // --- the conversation
         TIMEOUT: [
           "station {station} did not answer within {timeout} ms",
           "Check power, cable, A and B, station number and speed."
+        ],
+        STATION_DEMOTED: [
+          "station {station} was not asked: it has been silent for {lasting}, and is probed {when}",
+          "Check its power, cable and station number. It comes back by itself."
         ],
         INCOMPLETE: [
           "the answer of station {station} stopped after {got} of {expected} bytes",
@@ -534,21 +548,39 @@ var nxlineSerialPlc = (() => {
         NO_CONFIGURATION: ["{node} has no {what}", "Choose one in the dialog of the node."]
       });
       var MOST_SHOWN = 50;
-      var shortened = (value) => {
-        const isLong = (Array.isArray(value) || ArrayBuffer.isView(value)) && /** @type {any} */
-        value.length > MOST_SHOWN;
-        return isLong ? Array.from({ length: MOST_SHOWN }, (_, n) => value[n]) : value;
+      var MOST_TEXT = 200;
+      var firstPairs = (object) => {
+        const pairs = [];
+        for (const key in object) if (Object.hasOwn(object, key) && pairs.push([key, object[key]]) >= MOST_SHOWN) break;
+        return Object.fromEntries(pairs);
       };
-      var shown = (value) => {
+      var shortened = (value) => {
+        if (Array.isArray(value) || ArrayBuffer.isView(value)) {
+          const isLong = (
+            /** @type {any} */
+            value.length > MOST_SHOWN
+          );
+          return isLong ? Array.from({ length: MOST_SHOWN }, (_, n) => value[n]) : value;
+        }
+        return value !== null && typeof value === "object" ? firstPairs(value) : value;
+      };
+      var asJson = (value) => {
+        let left = MOST_SHOWN;
+        return JSON.stringify(value, (_, inner) => left-- > 0 ? shortened(inner) : void 0) ?? String(value);
+      };
+      var textOf = (value) => {
         if (value === void 0) return "?";
         if (typeof value === "string") return value;
         try {
-          return JSON.stringify(shortened(value), (_, inner) => shortened(inner)) ?? String(value);
+          return asJson(value);
         } catch {
           return typeof value;
         }
       };
-      var fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]).slice(0, 200));
+      var UNSEEN = /[\x00-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]/g;
+      var escaped = (character) => `\\u${character.charCodeAt(0).toString(16).padStart(4, "0")}`;
+      var shown = (value) => textOf(value).slice(0, MOST_TEXT).replace(UNSEEN, escaped);
+      var fill = (text, details) => text.replace(/\{(\w+)\}/g, (_, name) => shown(details[name]));
       var PlcError = class extends Error {
         /**
          * @param {keyof typeof CODES} code
@@ -568,7 +600,21 @@ var nxlineSerialPlc = (() => {
       var REFUSAL = /^(PLC|MODBUS|C24)_/;
       var isRefusal = (error) => typeof error?.code === "string" && REFUSAL.test(error.code);
       var causeOf = ({ message, remedy }) => message.endsWith(`. ${remedy}`) ? message.slice(0, -remedy.length - 2) : message;
-      module.exports = { CODES, PlcError, causeOf, isRefusal };
+      var isPlcError = (error) => {
+        try {
+          return error instanceof PlcError;
+        } catch {
+          return false;
+        }
+      };
+      var reasonOf = (error) => {
+        try {
+          return String(error?.message ?? error);
+        } catch {
+          return "it does not say why";
+        }
+      };
+      module.exports = { CODES, PlcError, causeOf, isPlcError, isRefusal, reasonOf };
     }
   });
 
@@ -876,6 +922,7 @@ var nxlineSerialPlc = (() => {
         ["off", false],
         ["0", false]
       ]);
+      var elementsOf = (list) => Array.from({ length: list.length }, (_, n) => list[n]);
       var absurdity = (value) => {
         if (value === null || value === void 0) return "it is empty";
         if (typeof value === "string" && value.trim() === "") return "it is empty";
@@ -918,7 +965,7 @@ var nxlineSerialPlc = (() => {
         }
         return text;
       };
-      module.exports = { absurdity, toBoolean, toNumber, toText };
+      module.exports = { absurdity, elementsOf, toBoolean, toNumber, toText };
     }
   });
 
@@ -1943,7 +1990,16 @@ var nxlineSerialPlc = (() => {
         });
       };
       var isOn = (value) => value === true || value === "true";
-      module.exports = { blank, choice, isOn, nameOf, readRanges, wholeNumber };
+      var readHealth = (given) => {
+        const demoteAfter = wholeNumber("demoteAfter", given.demoteAfter, { fallback: 3, least: 0, most: 100 });
+        const probeFirst = wholeNumber("probeFirst", given.probeFirst, { fallback: 5e3, least: 100, most: 36e5 });
+        const fallback = Math.max(6e4, probeFirst);
+        const probeMost = wholeNumber("probeMost", given.probeMost, { fallback, least: 100, most: 36e5 });
+        if (probeMost >= probeFirst) return { demoteAfter, probeFirst, probeMost };
+        const reason = `it is less than the time until the first probe, ${probeFirst}`;
+        throw new PlcError("BAD_SETTING", { setting: "probeMost", value: probeMost, reason });
+      };
+      module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber };
     }
   });
 
@@ -2588,7 +2644,7 @@ var nxlineSerialPlc = (() => {
       var { nxNotation } = require_nx_notation();
       var { describeAddress } = require_address2();
       var { planReads, planWrites } = require_plan();
-      var { choice, isOn, nameOf, readRanges, wholeNumber } = require_options();
+      var { choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require_options();
       var LAST_STATION = 191;
       var ANY_STATION = 255;
       var GAP = 10;
@@ -2654,12 +2710,13 @@ var nxlineSerialPlc = (() => {
           name: nameOf(given.name, station),
           timeout: wholeNumber("timeout", given.timeout, { fallback: 3e3, least: 10, most: 6e5 }),
           attempts: wholeNumber("attempts", given.attempts, { fallback: 3, least: 1, most: 20 }),
+          ...readHealth(given),
           masterIds: masterIdsOf(given.masterIds, stations),
           soleMaster: isOn(given.soleMaster),
           access: choice("access", given.access, ["read", "write"]),
           ranges: readRanges(given.writableRanges, notation),
-          deadline: wholeNumber("deadline", given.deadline, { fallback: 0, least: 0, most: 36e5 }),
           writeInterval: wholeNumber("writeInterval", given.writeInterval, { fallback: 0, least: 0, most: 36e5 }),
+          deadline: wholeNumber("deadline", given.deadline, { fallback: 0, least: 0, most: 36e5 }),
           notation,
           limits,
           reasons: REASONS,
@@ -3137,6 +3194,7 @@ var nxlineSerialPlc = (() => {
           wordOrder: pick("wordOrder", data.wordOrder, orders(data.wordOrder, device)),
           min: cell("min", data.min, { width: "52px", shows: "–" }),
           max: cell("max", data.max, { width: "52px", shows: "–" }),
+          maxStep: cell("maxStep", data.maxStep, { width: "52px", shows: "–" }),
           writable
         };
       };
@@ -3149,7 +3207,7 @@ var nxlineSerialPlc = (() => {
           flex(
             ...[mark("×"), fields.scale, mark("+"), fields.offset, mark(t("column.deadband")), fields.deadband],
             ...[fields.wordOrder, mark(t("column.min")), fields.min, mark(t("column.max")), fields.max],
-            fields.writable.label
+            ...[mark(t("column.maxStep")), fields.maxStep, fields.writable.label]
           )
         ).append(message).on("input change", judge);
         container.data("nxline", { read, judge });

@@ -60,6 +60,7 @@ const tagFields = (data, device) => {
     wordOrder: pick('wordOrder', data.wordOrder, orders(data.wordOrder, device)),
     min: cell('min', data.min, { width: '52px', shows: '–' }),
     max: cell('max', data.max, { width: '52px', shows: '–' }),
+    maxStep: cell('maxStep', data.maxStep, { width: '52px', shows: '–' }),
     writable
   }
 }
@@ -75,7 +76,7 @@ const addTag = (container, data, device) => {
       flex(
         ...[mark('×'), fields.scale, mark('+'), fields.offset, mark(t('column.deadband')), fields.deadband],
         ...[fields.wordOrder, mark(t('column.min')), fields.min, mark(t('column.max')), fields.max],
-        fields.writable.label
+        ...[mark(t('column.maxStep')), fields.maxStep, fields.writable.label]
       )
     )
     .append(message)

@@ -171,7 +171,7 @@ describe('audit of writes, NX PLC', () => {
       ]
     )
     assert.equal(event.items[0].item, 'K0·')
-    assert.match(event.cause, /^[\x20-\x7e]*$/)
+    assert.match(event.cause, /^[\x20-\x7e·]*$/)
     assert.deepEqual(event.by, { node: 'n·', name: `${'y'.repeat(79)}…`, message: '(object)' })
     assert.deepEqual(JSON.parse(JSON.stringify(event)), event)
   })

@@ -66,10 +66,13 @@ const read = (name, rule, raw) => {
   return rule.kind === 'choice' ? readChoice(name, rule, raw) : readText(name, raw)
 }
 
+const UPWARDS = /(^|[\\/])\.\.([\\/]|$)/
+
 /** What each transport cannot do without. */
 const NEEDS = {
   serial: s => {
     if (!s.path) throw bad('path', s.path, 'a serial line needs the path of its port')
+    if (UPWARDS.test(s.path)) throw bad('path', s.path, 'the name of a port does not lead upwards')
   },
   tcp: s => {
     if (!s.host) throw bad('host', s.host, 'a line over TCP needs the host of the serial server')

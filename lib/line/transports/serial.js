@@ -2,6 +2,7 @@
 
 const fs = require('node:fs')
 const { PlcError } = require('../../error')
+const { notAPort } = require('./device-file')
 const { Intake } = require('./intake')
 const { createPace, pacedBinding } = require('./paced-binding')
 const { goneError, openError } = require('./port-errors')
@@ -72,7 +73,11 @@ class SerialTransport {
     return deviceOf(this.#settings.path) ?? this.#settings.path
   }
 
+  /** @throws {PlcError} BAD_SETTING: something else than a serial port stands there; nothing is opened */
   open(handlers) {
+    const { path } = this.#settings
+    const reason = notAPort(path)
+    if (reason) throw new PlcError('BAD_SETTING', { setting: 'path', value: path, reason })
     // serialport is loaded when the first port is opened: a line over TCP needs no native code
     const { SerialPort } = require('serialport')
     this.#handlers = handlers

@@ -261,12 +261,12 @@ describe('serial transport over other bindings', () => {
 
   for (const [what, change] of [
     ['went', name => fs.unlinkSync(name)],
-    ['leads to another device', name => (fs.unlinkSync(name), fs.symlinkSync('/dev/null', name))]
+    ['leads to another device', name => (fs.unlinkSync(name), fs.symlinkSync('/dev/ptmx', name))]
   ]) {
     it(`finds out after an unanswered request that the name ${what}`, async () => {
       const folder = tempFolder()
       const name = path.join(folder, 'port')
-      fs.symlinkSync('/dev/zero', name)
+      fs.symlinkSync('/dev/tty', name)
       binding.createPort(name)
       const told = []
       const gone = new Promise(resolve => told.push(resolve))

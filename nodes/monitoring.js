@@ -66,7 +66,12 @@ const startWatching = (RED, session) => {
     ...(settings.trace ? { frame: row => send([null, null, fields('frame', row)]) } : {})
   })
   return {
-    answer: msg => Object.assign(msg, fields(topic, monitor.statistics())),
+    /** What a message asks for, in that message. */
+    async answer(msg) {
+      const wantsEvidence = Object.hasOwn(msg, 'payload') && msg.payload === 'evidence'
+      const [name, all] = wantsEvidence ? ['evidence', await monitor.evidence()] : [topic, monitor.statistics()]
+      return Object.assign(msg, fields(name, all))
+    },
     stop() {
       monitor.stop()
       stop()
@@ -93,8 +98,10 @@ const openMonitor = (RED, node, { type, config }) => {
   })
   node.on('input', (msg, send, done) => {
     if (session.fault) return done(session.fault)
-    send([null, answer(msg), null])
-    done()
+    answer(msg).then(told => {
+      send([null, told, null])
+      done()
+    }, done)
   })
 }
 

@@ -3,7 +3,7 @@ const { PlcError, listPorts, masterIdsOf, mixedConflict } = require('../lib/inde
 const { kindOf } = require('./device-settings')
 const { poolSettings } = require('./line-settings')
 const { listenerHolder } = require('./listeners')
-const { sharedPool } = require('./pool')
+const { keepEvidence, sharedPool } = require('./pool')
 const { readSettings } = require('./settings')
 const { simulatedLine } = require('./simulated')
 
@@ -87,6 +87,7 @@ const listHandler = (_request, response) =>
   )
 
 module.exports = function (RED) {
+  keepEvidence(RED.settings.userDir)
   /** @this {any} */
   function PlcLine(config) {
     RED.nodes.createNode(this, config)

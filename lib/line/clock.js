@@ -15,6 +15,16 @@ const realClock = Object.freeze({
   clearTimer: timer => clearTimeout(timer)
 })
 
+/** The last moment that a date can say, epoch ms. */
+const LAST = 8.64e15
+
+/**
+ * A moment as a text for people, UTC.
+ * @param {number} wall epoch ms
+ * @returns {string | null} null: it is none
+ */
+const timeText = wall => (Math.abs(wall) <= LAST ? new Date(wall).toISOString() : null)
+
 /**
  * @typedef {object} Clock
  * @property {() => number} now monotonic ms, with fractions
@@ -23,4 +33,4 @@ const realClock = Object.freeze({
  * @property {(timer: any) => void} clearTimer any number of times; undefined is allowed
  */
 
-module.exports = { realClock }
+module.exports = { realClock, timeText }

@@ -35,22 +35,29 @@ class Line extends EventEmitter {
   #recorder
   #condition
   #outage
+  #evidence
   #calm
   #grace = null
   #missing = new Missing()
 
   /**
    * @param {{ name: string, settings: any, clock: any, make: () => any, random: () => number, claims: any,
-   *   memories: Map<any, any>, outage: { downAt: number | null } }} options outage: kept by the pool, see outage.js
+   *   memories: Map<any, any>, outage: { downAt: number | null }, evidence?: import('./evidence').Evidence | null }} options
+   *   memories, outage, evidence: kept by the pool, by wire
    */
-  constructor({ name, settings, clock, make, random, claims, memories, outage }) {
+  constructor({ name, settings, clock, make, random, claims, memories, outage, evidence = null }) {
     super()
     this.setMaxListeners(0)
     this.name = name
     this.#clock = clock
     this.#settings = settings
     this.#times = lineTimes(settings)
-    this.#recorder = new Recorder(clock, (row, grows) => this.emit('frame', row, grows))
+    this.#evidence = evidence
+    this.#recorder = new Recorder(clock, {
+      frame: (row, grows) => this.#frame(row, grows),
+      fault: (station, code) => evidence?.fault(station, code),
+      good: station => evidence?.good(station)
+    })
     this.#condition = new Condition({ line: name, changed: (state, reason) => this.#changed(state, reason) })
     this.#outage = new Outage({ clock, memory: outage, report: event => this.report(event) })
     this.#use = new Use(name)
@@ -65,6 +72,11 @@ class Line extends EventEmitter {
       down: (error, wasOpen) => this.#down(error, wasOpen)
     }
     this.#connection = new Connection({ name, clock, make, random, claims, told })
+  }
+
+  #frame(row, grows) {
+    this.#evidence?.frame(row)
+    this.emit('frame', row, grows)
   }
 
   #changed(state, reason) {
@@ -141,7 +153,9 @@ class Line extends EventEmitter {
 
   /** Tells all who listen of something that was noticed: `{ event, station, cause, remedy, … }`. */
   report(event) {
-    this.emit('event', { since: this.#clock.wall(), ...event })
+    const whole = { since: this.#clock.wall(), ...event }
+    this.#evidence?.event(whole)
+    this.emit('event', whole)
   }
 
   // --- who uses it; see lease.js

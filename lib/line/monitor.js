@@ -23,14 +23,16 @@ class Monitor {
   #since
   #timer = null
   #stop
+  #evidence
 
   /**
-   * @param {{ clock: any, name: string, watch: (told: any) => () => void }} wire
+   * @param {{ clock: any, name: string, watch: (told: any) => () => void, evidence: { facts: () => any, read: (most: number) => Promise<any> } }} wire
    * @param {MonitorOptions} [options]
    */
-  constructor({ clock, name, watch }, options = {}) {
+  constructor({ clock, name, watch, evidence }, options = {}) {
     this.#clock = clock
     this.#name = name
+    this.#evidence = evidence
     this.#told = options
     this.#since = { at: clock.now(), busy: 0 }
     const { frame, interval = 0 } = options
@@ -84,7 +86,7 @@ class Monitor {
 
   /**
    * How the line is now: all of `line.stats()`, and `line` (its name), `timestamp`, `state`, `reason` ({ code, cause, remedy } or null), `echo`,
-   * `demoted` (names of stations), `period` (ms since the last statistics), `busyPercent` (of that time).
+   * `demoted` (names of stations), `period` (ms since the last statistics), `busyPercent` (of that time), `evidence` (of evidence-file.js).
    */
   statistics() {
     const counts = this.#counts()
@@ -96,8 +98,19 @@ class Monitor {
       echo: this.#line?.echo ?? 'unknown',
       ...counts,
       ...this.#busyPercent(counts.busy),
-      demoted: demotedOf(counts.stations)
+      demoted: demotedOf(counts.stations),
+      evidence: this.#evidence.facts()
     }
+  }
+
+  /**
+   * The last frames around faults, as they stand on disk.
+   * @param {number} [most] rows
+   * @returns {Promise<{ file: string | null, previous: string | null, rows: any[], written: number, skipped: number, lost: number,
+   *   error: { code: string, text: string } | null }>} never rejects; file null: the pool keeps none
+   */
+  evidence(most = 500) {
+    return this.#evidence.read(most)
   }
 
   /** Ends it; any number of times. */

@@ -1,6 +1,7 @@
 'use strict'
 
 const { PlcError } = require('../error')
+const { Archive } = require('./archive')
 const { realClock } = require('./clock')
 const { Lease } = require('./lease')
 const { Line } = require('./line')
@@ -20,8 +21,9 @@ const TRANSPORTS = Object.freeze({ serial, tcp, simulated })
  * @param {import('./clock').Clock} [options.clock]
  * @param {Record<string, (settings: any, clock: any) => any>} [options.transports] factories by name; replace the own ones
  * @param {() => number} [options.random] 0 to 1, for the jitter of reconnecting
+ * @param {{ folder: string | (() => string) }} [options.evidence] where the frames around each fault are kept; '' or none: nowhere
  */
-function createPool({ clock = realClock, transports = {}, random = Math.random } = {}) {
+function createPool({ clock = realClock, transports = {}, random = Math.random, evidence = { folder: '' } } = {}) {
   const pool = {
     clock,
     random,
@@ -31,7 +33,8 @@ function createPool({ clock = realClock, transports = {}, random = Math.random }
     claims: new Map(),
     memories: new Map(),
     outages: new Map(),
-    watchers: new Watchers(clock)
+    watchers: new Watchers(clock),
+    archive: new Archive(clock, evidence.folder)
   }
   const watch = (settings, told) => {
     const key = wireKey(settings)
@@ -57,12 +60,15 @@ function createPool({ clock = realClock, transports = {}, random = Math.random }
      * The same with statistics, see monitor.js.
      * @param {any} raw settings of a line
      * @param {import('./monitor').MonitorOptions} [options]
-     * @returns {Monitor} `{ statistics(), stop() }`
+     * @returns {Monitor} `{ statistics(), evidence(most), stop() }`
      * @throws {PlcError} BAD_SETTING
      */
     monitor(raw, options) {
       const settings = lineSettings(raw)
-      return new Monitor({ clock, name: lineName(settings), watch: told => watch(settings, told) }, options)
+      const key = wireKey(settings)
+      const kept = { facts: () => pool.archive.facts(key), read: most => pool.archive.read(key, most) }
+      const wire = { clock, name: lineName(settings), watch: told => watch(settings, told), evidence: kept }
+      return new Monitor(wire, options)
     },
     /** The open lines, for tests and monitors: `{ key, line, leases }`. */
     lines: () => [...pool.entries.values()].map(({ key, line, leases }) => ({ key, line, leases: leases.size }))
@@ -96,7 +102,8 @@ function newEntry(pool, { key, settings, owner }) {
     make: () => pool.transports[settings.transport](settings, clock),
     claims: claimsOf(pool, entry),
     memories: memories.get(key),
-    outage: pool.outages.get(key)
+    outage: pool.outages.get(key),
+    evidence: pool.archive.of(key)?.evidence
   })
   entry.line = line
   pool.entries.set(key, entry)
@@ -139,9 +146,16 @@ function leave(pool, entry, { lease: gone, done }) {
   line.close(() => {
     closing.lines--
     if (closing.lines === 0) pool.closing.delete(key)
-    done()
+    settle(pool, key, done)
     if (closing.lines === 0) for (const next of closing.waiting) next()
   })
+}
+
+/** The evidence of the last seconds is written before the process may end. */
+function settle(pool, key, done) {
+  const kept = pool.archive.of(key)
+  if (kept) kept.file.settle(done)
+  else done()
 }
 
 module.exports = { createPool }

@@ -11,12 +11,18 @@ class Recorder {
   stats = new Stats()
   trace
   #clock
+  #told
   #sentAt = 0
 
-  /** @param {any} clock @param {(row: any, grows: boolean) => void} [frame] told of each row of the trace */
-  constructor(clock, frame) {
+  /**
+   * @param {any} clock
+   * @param {{ frame?: (row: any, grows: boolean) => void, fault: (station: any, code: string) => void, good: (station: any) => void }} [told]
+   *   frame: each row of the trace; fault: what went wrong; good: a station, or the other side, has spoken well
+   */
+  constructor(clock, told = { fault() {}, good() {} }) {
     this.#clock = clock
-    this.trace = new Trace({ tell: frame })
+    this.#told = told
+    this.trace = new Trace({ tell: told.frame })
   }
 
   #row(dir, { station, bytes, note }) {
@@ -37,12 +43,14 @@ class Recorder {
     if (!step.match) return
     this.stats.answered(station, facts.ms)
     this.#row('in', { station, bytes: answer, note: '' })
+    this.#told.good(station)
   }
 
   #failed(station, error, seen) {
     const counter = FAILURES[error.code]
     if (counter) this.stats.count(counter, station)
     this.#row('in', { station, bytes: seen, note: error.code ?? error.message })
+    this.#told.fault(station, error.code ?? error.message)
   }
 
   late(station, frame) {
@@ -67,6 +75,7 @@ class Recorder {
     const counter = FAILURES[error.code]
     if (counter) this.stats.count(counter)
     this.failed(error.code ?? error.message)
+    this.#told.fault(null, error.code ?? error.message)
   }
 
   /** @param {string} note */
@@ -80,6 +89,8 @@ class Recorder {
     this.stats.count('messagesIn')
     if (damaged) this.stats.count('damagedMessages')
     this.#row('in', { station: null, bytes, note: reason ?? (damaged ? 'incomplete' : '') })
+    if (damaged) this.#told.fault(null, reason ?? 'incomplete')
+    else this.#told.good(null)
   }
 
   // --- bytes that nobody asked for

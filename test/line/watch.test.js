@@ -273,10 +273,10 @@ describe('line: monitor', () => {
     const known = Object.keys(lease.line.stats())
     await run(lease.release())
     const monitor = pool.monitor({ transport: 'simulated', wire, name: 'W' })
-    const { line, state, reason, echo, timestamp, stations, demoted, busyPercent, period, ...counts } =
+    const { line, state, reason, echo, timestamp, stations, demoted, busyPercent, period, evidence, ...counts } =
       monitor.statistics()
     assert.deepEqual([line, state, reason, echo, timestamp], ['W', 'closed', null, 'unknown', clock.wall()])
-    assert.deepEqual([stations, demoted, busyPercent, period], [{}, [], 0, 0])
+    assert.deepEqual([stations, demoted, busyPercent, period, evidence.file], [{}, [], 0, 0, null])
     assert.deepEqual(Object.keys(counts).sort(), known.filter(name => name !== 'stations').sort())
     assert.ok(Object.values(counts).every(value => value === 0))
     monitor.stop()

@@ -1,5 +1,8 @@
 'use strict'
 const assert = require('node:assert/strict')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
 const {
   ON_TAB,
   TAB,
@@ -16,7 +19,7 @@ const {
   tick,
   until
 } = require('./bench')
-const { sharedPool } = require('../../nodes/pool')
+const { keepEvidence, sharedPool } = require('../../nodes/pool')
 const { statusOf } = require('../../nodes/status')
 
 const monitor = (more = {}) => ({
@@ -160,6 +163,51 @@ describe('plc-monitor', () => {
     const { caught } = await loadWatched([monitor({ line: '' })])
     await until(() => caught.length > 0, 'the report')
     assert.equal(caught[0].error.code, 'NO_CONFIGURATION')
+  })
+
+  describe('evidence', () => {
+    let userDir
+    beforeEach(() => {
+      userDir = fs.mkdtempSync(path.join(os.tmpdir(), 'monitor-'))
+      helper.settings({ userDir })
+    })
+    afterEach(async () => {
+      await helper.unload()
+      helper.settings({ userDir: undefined })
+      keepEvidence(undefined)
+      fs.rmSync(userDir, { recursive: true, force: true })
+    })
+
+    it('the frames around a fault, below the user directory; an undeploy has written them', async () => {
+      const nodes = [lineNode(wire), plcNode({ station: '9', timeout: '20' }), reader({ items: ['M0'], interval: '0' })]
+      const { statistics, caught } = await loadWatched([...nodes, monitor()])
+      helper.getNode('read').receive({})
+      await until(() => caught.length > 0, 'the timeout')
+      ask({ payload: 'evidence', res: 'kept' })
+      const [{ topic, payload, res }] = await until(() => statistics.length > 0 && statistics, 'the answer')
+      assert.deepEqual(
+        [topic, res, payload.error, path.dirname(payload.file)],
+        ['evidence', 'kept', null, path.join(userDir, 'serial-plc')]
+      )
+      const [query, silence, fault] = payload.rows
+      assert.deepEqual([query.dir, query.station, silence.note], ['out', 9, 'TIMEOUT'])
+      assert.deepEqual([fault.is, fault.station, fault.code], ['fault', 9, 'TIMEOUT'])
+      ask({ payload: 'other' })
+      await until(() => statistics.length > 1, 'statistics')
+      assert.equal(statistics[1].payload.evidence.written, payload.written)
+      const { line } = sharedPool().lines()[0]
+      line.report({ event: 'stationDemoted', station: 9, cause: 'c', remedy: 'r' })
+      await helper.setFlows([], 'full')
+      const lines = fs.readFileSync(payload.file, 'utf8').trim().split('\n')
+      assert.equal(JSON.parse(lines.at(-1)).event, 'stationDemoted')
+    })
+  })
+
+  it('without a user directory no evidence is kept', async () => {
+    const { statistics } = await loadWatched([lineNode(wire), monitor()])
+    ask({ payload: 'evidence' })
+    await until(() => statistics.length > 0, 'the answer')
+    assert.deepEqual([statistics[0].payload.file, statistics[0].payload.rows], [null, []])
   })
 
   it('simulated lines and lines that are listened to', async () => {

@@ -1,0 +1,101 @@
+'use strict'
+
+/** Frames that are kept before a fault, and after it. */
+const BEFORE = 200
+const AFTER = 200
+/** Events among them: while a line is down no frame ends a window. */
+const MOST_EVENTS = 100
+/** Stations with faults that go on; one more, and all count as new. */
+const MOST_STATIONS = 1000
+
+/** Events after which what was on the wire is worth keeping; of all others they are kept themselves. */
+const FAULTS = ['late', 'jammed', 'lineDown', 'stationDemoted', 'fixedMasterId']
+/** What became of a write that somebody may ask about. */
+const DOUBTFUL = ['unknown', 'failed']
+
+/** @param {any} event */
+const isFault = ({ event, outcome }) => FAULTS.includes(event) || (event === 'audit' && DOUBTFUL.includes(outcome))
+const nameOf = ({ event, outcome }) => (event === 'audit' ? `${event} ${outcome}` : event)
+
+/**
+ * The frames before and after each fault of a wire, with the events. Each frame is given away once, however many faults it lies between. A fault
+ * that goes on (same station, same code, no good answer between) gives nothing more away. Knows no disk: `give` gets what is to be kept, in order:
+ * `{ is: 'frame', row }`, `{ is: 'event', event }`, `{ is: 'fault', t, station, code }`.
+ */
+class Evidence {
+  #clock
+  #give
+  /** What no fault has asked for yet. @type {any[]} */
+  #before = []
+  #frames = 0
+  #after = 0
+  #eventsAfter = 0
+  /** Of each station what goes on. @type {Map<any, Set<string>>} */
+  #going = new Map()
+
+  /** @param {{ clock: any, give: (entry: any) => void }} options */
+  constructor({ clock, give }) {
+    this.#clock = clock
+    this.#give = give
+  }
+
+  /** @param {any} row of the trace: the object itself, it may still grow */
+  frame(row) {
+    if (this.#after > 0) {
+      this.#after--
+      return this.#give({ is: 'frame', row })
+    }
+    this.#frames++
+    this.#keep({ is: 'frame', row })
+  }
+
+  #keep(entry) {
+    this.#before.push(entry)
+    while (this.#frames > BEFORE || this.#before.length > BEFORE + MOST_EVENTS) {
+      if (this.#before.shift().is === 'frame') this.#frames--
+    }
+  }
+
+  /** Something went wrong on the wire. @param {any} station null: the line's @param {string} code */
+  fault(station, code) {
+    if (this.#isNew(station, code)) this.#open(station, code)
+  }
+
+  /** The station, and so the line, works. @param {any} station */
+  good(station) {
+    if (this.#going.size === 0) return
+    this.#going.delete(station)
+    this.#going.delete(null)
+  }
+
+  /** @param {any} event that was reported */
+  event(event) {
+    const name = nameOf(event)
+    const isNew = name !== 'audit confirmed' && name !== 'audit refused' && this.#isNew(event.station, name)
+    if (isNew && isFault(event)) this.#open(event.station, name)
+    const entry = { is: 'event', event }
+    if (this.#after > 0 && this.#eventsAfter > 0) {
+      this.#eventsAfter--
+      this.#give(entry)
+    } else if (isNew && !isFault(event)) this.#give(entry)
+    else this.#keep(entry)
+  }
+
+  #isNew(station, code) {
+    if (this.#going.size >= MOST_STATIONS) this.#going.clear()
+    const codes = this.#going.get(station) ?? new Set()
+    if (codes.has(code)) return false
+    this.#going.set(station, codes.add(code))
+    return true
+  }
+
+  #open(station, code) {
+    for (const entry of this.#before.splice(0)) this.#give(entry)
+    this.#frames = 0
+    this.#after = AFTER
+    this.#eventsAfter = MOST_EVENTS
+    this.#give({ is: 'fault', t: this.#clock.wall(), station, code })
+  }
+}
+
+module.exports = { Evidence }

@@ -100,4 +100,4 @@ function runPeer(clock, wire, { tasks, protocol, timeout, unit, together }) {
   })
 }
 
-module.exports = { runPeer }
+module.exports = { bindingTo, inVirtualTime, runPeer }

@@ -2,7 +2,7 @@
 
 /** Groups of items that are polled while users ask and write: what they deliver is judged like any read, and in the end each must deliver again. */
 
-const { judge, randomItem } = require('./workload')
+const { judge, drawItem } = require('./workload')
 
 const INTERVALS = [50, 100, 200, 500, 1000] // ms
 /** A cycle's start is computed back from its length: no value is missed by rounding. */
@@ -24,7 +24,7 @@ const drawGroups = system =>
   )
 
 function drawItems(system, index) {
-  const items = Array.from({ length: system.random.integer(1, 5) }, () => randomItem(system, index))
+  const items = Array.from({ length: system.random.integer(1, 5) }, () => drawItem(system, index))
   return [...new Map(items.map(item => [item.text, item])).values()]
 }
 

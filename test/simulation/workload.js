@@ -43,7 +43,7 @@ const createDevice = (row, common) => USERS[row.device].createDevice(row, { ...c
 const step = (system, index) =>
   !system.uniform && system.random.chance(0.25) ? write(system, index) : read(system, index)
 
-const randomItem = ({ random, rows }, index) => USERS[rows[index].device].randomItem(random)
+const drawItem = ({ random, rows }, index) => USERS[rows[index].device].randomItem(random)
 
 /** @returns {Promise<boolean>} whether every value was good */
 async function read(system, index) {
@@ -65,7 +65,10 @@ async function read(system, index) {
   return results.length > 0 && results.every(({ quality }) => quality === 'good')
 }
 
-function judge({ report, rows, line }, { index, item, result: { quality, code, value }, from, to }) {
+const EVIDENCE = 2 // wrong values that are shown with the frames before them
+const FRAMES = 200
+
+function judge({ report, rows, line, lease }, { index, item, result: { quality, code, value }, from, to }) {
   if (quality === 'bad') {
     report.bad++
     report.codes[code] = (report.codes[code] ?? 0) + 1
@@ -73,7 +76,8 @@ function judge({ report, rows, line }, { index, item, result: { quality, code, v
   }
   report.good++
   if (isHeld(line.stations[index], item, { value, from, to })) return
-  report.wrong.push({ station: rows[index].station, item: item.text, from, to, got: value })
+  const frames = report.wrong.length < EVIDENCE ? lease.line.trace().slice(-FRAMES) : []
+  report.wrong.push({ station: rows[index].station, item: item.text, from, to, got: value, frames })
 }
 
 /** Whether the station held this value there, at some moment. */
@@ -139,7 +143,7 @@ module.exports = {
   isHeld,
   judge,
   mixed,
-  randomItem,
+  drawItem,
   read,
   regulators,
   simulated,

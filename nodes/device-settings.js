@@ -11,6 +11,9 @@ const nxSettings = (settings, { name, stations, gap }) => ({
   steps: Number(settings.steps),
   timeout: settings.timeout,
   attempts: settings.attempts,
+  demoteAfter: settings.demoteAfter,
+  probeFirst: settings.probeFirst,
+  probeMost: settings.probeMost,
   // the line keeps its own gap to the fraction; here it only takes the place of the protocol's
   gap: gap > 0 ? Math.max(1, Math.floor(gap)) : 0,
   masterIds: settings.masterIds,

@@ -16,6 +16,13 @@ const list = () => ({ kind: 'list', fallback: [] })
 const bytes = (fallback, most) => ({ kind: 'bytes', fallback, most, blank: true, says: `0 to ${most} bytes in hex` })
 const node = () => ({ kind: 'node', fallback: '', needed: true })
 
+/** When a silent station is demoted, and how often it is probed then. */
+const HEALTH = {
+  demoteAfter: number(3, 0, 100),
+  probeFirst: number(5000, 100, 3600000),
+  probeMost: number(60000, 100, 3600000)
+}
+
 /** What a node that reads has beside its device. */
 const READING = {
   itemsType: choice('list', 'list', 'msg'),
@@ -76,6 +83,7 @@ const PROPERTIES = {
     steps: choice('2', '2', '4'),
     timeout: number(3000, 10, 600000),
     attempts: number(3, 1, 20),
+    ...HEALTH,
     masterIds: text('E2..E9'),
     soleMaster: flag(),
     access: choice('read', 'read', 'write'),
@@ -96,6 +104,8 @@ const PROPERTIES = {
     timeout: number(1000, 10, 600000),
     sendWait: number(0, 0, 10000),
     attempts: number(3, 1, 20),
+    ...HEALTH,
+    probe08: flag(),
     addressMode: choice('1-base', '1-base', '0-base'),
     coilRead: number(2000, 1, 2000),
     coilUnit: number(1, 1, 2000),

@@ -31,6 +31,7 @@ const REASONS = {
 const CAUSES = {
   ...REASONS,
   TIMEOUT: 'noAnswer',
+  STATION_DEMOTED: 'demoted',
   INCOMPLETE: 'damaged',
   CRC_ERROR: 'damaged',
   BAD_ANSWER: 'damaged',

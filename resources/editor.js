@@ -21,6 +21,11 @@ var nxlineSerialPlc = (() => {
       var list = () => ({ kind: "list", fallback: [] });
       var bytes = (fallback, most) => ({ kind: "bytes", fallback, most, blank: true, says: `0 to ${most} bytes in hex` });
       var node = () => ({ kind: "node", fallback: "", needed: true });
+      var HEALTH = {
+        demoteAfter: number(3, 0, 100),
+        probeFirst: number(5e3, 100, 36e5),
+        probeMost: number(6e4, 100, 36e5)
+      };
       var READING = {
         itemsType: choice("list", "list", "msg"),
         items: list(),
@@ -74,6 +79,7 @@ var nxlineSerialPlc = (() => {
           steps: choice("2", "2", "4"),
           timeout: number(3e3, 10, 6e5),
           attempts: number(3, 1, 20),
+          ...HEALTH,
           masterIds: text("E2..E9"),
           soleMaster: flag(),
           access: choice("read", "read", "write"),
@@ -94,6 +100,8 @@ var nxlineSerialPlc = (() => {
           timeout: number(1e3, 10, 6e5),
           sendWait: number(0, 0, 1e4),
           attempts: number(3, 1, 20),
+          ...HEALTH,
+          probe08: flag(),
           addressMode: choice("1-base", "1-base", "0-base"),
           coilRead: number(2e3, 1, 2e3),
           coilUnit: number(1, 1, 2e3),

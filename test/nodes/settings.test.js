@@ -6,6 +6,9 @@ const { poolSettings } = require('../../nodes/line-settings')
 const { PROPERTIES } = require('../../nodes/properties')
 const { readSettings } = require('../../nodes/settings')
 
+/** A line that nobody asks anything of. */
+const bareLease = () => ({ line: { memory: () => ({}) }, on: () => {}, off: () => {} })
+
 describe('settings on their way to the library', () => {
   const line = config => readSettings('plc-line', { path: '/dev/a', ...config })
   const device = gap =>
@@ -26,7 +29,7 @@ describe('settings on their way to the library', () => {
   })
 
   it('a faulty row of a tag table: the others are read, in the notation of the configuration, and nothing is written', () => {
-    const lease = { line: { memory: () => ({}) } }
+    const lease = bareLease()
     const config = { line: 'l', station: '1', addressMode: '0-base', access: 'write' }
     const tags = [
       { name: 'first', address: '400000' },
@@ -41,7 +44,7 @@ describe('settings on their way to the library', () => {
   })
 
   it('a regulator’s numbers have the same limits in the node and in the library', () => {
-    const lease = { line: { memory: () => ({}) } }
+    const lease = bareLease()
     const works = settings => {
       try {
         createChinoRegulator({ lease, station: 1, ...settings }).close()
@@ -53,7 +56,9 @@ describe('settings on their way to the library', () => {
     }
     for (const [name, { kind, least, most }] of Object.entries(PROPERTIES['chino-config'])) {
       if (kind !== 'number') continue
-      const given = [least - 1, least, most, most + 1].map(value => works({ broadcast: true, [name]: value }))
+      const given = [least - 1, least, most, most + 1].map(value =>
+        works({ broadcast: true, probeFirst: 100, [name]: value })
+      )
       assert.deepEqual(given, [false, true, true, false], name)
     }
   })

@@ -225,8 +225,20 @@ class MessageSplitter {
       this.#begun = true
     } else if (length > most + marker.length) {
       this.#damaged('tooLong', most)
-      this.#start(SKIP)
+      this.#skipRest()
     }
+  }
+
+  /** Its last bytes may be the first ones of what ends it, or of the next first frame. */
+  #skipRest() {
+    const kept = Math.max(this.#marker.length, this.#first.length)
+    this.#tail.keep(kept)
+    this.#begun = false
+    this.#state = SKIP
+    if (!this.#format.asciiBinary) return
+    const characters = toAscii(this.#tail.copy(kept))
+    this.#tail.clear()
+    for (const character of characters) this.#tail.add(character, false)
   }
 }
 

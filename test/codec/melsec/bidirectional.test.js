@@ -6,7 +6,7 @@ const melsec = require('../../../lib/codec/melsec/bidirectional')
 const { Repeats } = require('../../../lib/codec/melsec/repeats')
 const { FRAMES, TEXT, bytes } = require('../../vectors/melsec')
 
-const { ACK_FRAME, bidirectionalFraming, encodeFrame, encodeNak, nakText } = melsec
+const { ACK_FRAME, NAK_CODES, OUR_NAK, bidirectionalFraming, encodeFrame, encodeNak, nakText } = melsec
 const splitter = options => bidirectionalFraming(bidirectionalFormat(options)).create()
 const encode = (body, options) => encodeFrame(Buffer.from(body), bidirectionalFormat(options))
 const code = wanted => error => error.code === wanted
@@ -87,6 +87,63 @@ describe('MELSEC bidirectional protocol', () => {
     assert.match(nakText(0x1234), /not in the list/)
   })
 
+  it('the codes of the manual, ch. 10, have words; ours are among those that are free, and none is a control code', () => {
+    const listed = [0x7f01, 0x7f20, 0x7f21, 0x7f24, 0x7f25, 0x7f31, 0x7f40, 0x7f41, 0x7f67, 0x7f68, 0x7f69, 0x7f6a]
+    assert.deepEqual([...NAK_CODES.keys()], listed)
+    assert.equal(new Set(listed.map(nakText)).size, listed.length)
+    for (const number of listed) assert.match(nakText(number), /^[\w-][\w :-]+$/)
+    const own = Object.values(OUR_NAK)
+    assert.deepEqual(Object.keys(OUR_NAK), ['sum', 'length', 'incomplete', 'notHex', 'other'])
+    assert.ok(new Set(own).size === 5 && own.every(number => number >= 0x22 && number <= 0x5f))
+  })
+
+  it('behind stray bytes nothing is made of what follows, whatever came before', () => {
+    const one = splitter()
+    assert.equal(one.push(frameOf([1, 2])).length, 1)
+    // as many bytes as were awaited last, and a sum that would fit
+    assert.deepEqual(one.push(bytes('41 42 43 00 00 00 00 06')), [])
+    assert.deepEqual(one.flush(), [
+      { kind: 'damaged', bytes: bytes('41 42 43 00 00 00 00 06'), complete: false, reason: 'stray', began: false }
+    ])
+  })
+
+  it('the reason is that of this frame, not of an earlier one', () => {
+    const one = splitter({ asciiBinary: true })
+    const told = wire => {
+      const [{ kind, reason, began }] = [...one.push(bytes(wire)), ...one.flush()]
+      return [kind, reason, began]
+    }
+    assert.deepEqual(told('05 30 32 30 30 31 78'), ['damaged', 'incomplete', true])
+    assert.deepEqual(told('05 30 78 30 30'), ['damaged', 'notHex', true])
+    assert.deepEqual(told('05 30'), ['damaged', 'incomplete', true])
+    assert.deepEqual(told('41'), ['damaged', 'stray', false])
+    assert.deepEqual(told('06 41'), ['damaged', 'stray', false])
+    assert.deepEqual(told('15 32'), ['damaged', 'incomplete', false])
+  })
+
+  it('DC1 and DC3 are not made transparent here: a sum may contain them anyway', () => {
+    assert.deepEqual(encode([0x11, 0x13], { transparent: bytes('10') }), bytes('05 01 00 11 13 25 00'))
+  })
+
+  it('the silence is four characters of a slow line, or what is set', () => {
+    const times = options => {
+      const { silence, ackSilence } = bidirectionalFormat(options)
+      return [silence, ackSilence]
+    }
+    assert.deepEqual(times(), [50, 2])
+    assert.deepEqual(times({ character: 10 }), [50, 40])
+    assert.deepEqual(times({ character: 33.4 }), [134, 134])
+    assert.deepEqual(times({ character: 33.4, gap: 7 }), [7, 134])
+  })
+
+  it('the key is that of this protocol and its settings', () => {
+    const key = options => bidirectionalFraming(bidirectionalFormat(options)).key
+    assert.match(key(), /^melsec bidirectional unit=word sumCheck=true most=16384 /)
+    assert.notEqual(key({ transparent: bytes('10 02') }), key({ transparent: bytes('10 03') }))
+    assert.equal(key({ transparent: bytes('10 02 03') }), key({ transparent: bytes('10 03 02') }))
+    assert.match(key({ transparent: bytes('10 03 02') }), / additional=16 escaped=2 3 16 /)
+  })
+
   it('after damage all is dropped until the line is silent, and told once', () => {
     const one = splitter()
     const wrong = bytes('05 01 00 41 42 00 00')
@@ -144,6 +201,24 @@ describe('MELSEC bidirectional protocol', () => {
     assert.throws(() => encode('ABCD', { most: 3 }), code('FRAME_TOO_LONG'))
     assert.throws(() => bidirectionalFormat({ dc: true }), code('BAD_SETTING'))
     assert.throws(() => bidirectionalFormat({ most: 200000 }), code('BAD_SETTING'))
+    assert.equal(encode('ABCD', { most: 4 }).length, 9)
+    for (const [unit, most] of [
+      ['word', 131070],
+      ['byte', 65535]
+    ]) {
+      assert.equal(bidirectionalFormat({ unit, most }).most, most)
+      assert.throws(() => bidirectionalFormat({ unit, most: most + 1 }), {
+        details: { setting: 'most', value: most + 1, reason: `a whole number from 1 to ${most} is needed` }
+      })
+    }
+    const says = (call, details) => assert.throws(call, { details })
+    says(() => encode('ABCD', { most: 3 }), { what: 'the message', got: 4, most: 3 })
+    says(() => encode(''), { item: 'the message', value: '', reason: 'it is empty' })
+    says(() => encode('ABC'), { count: 3, reason: 'the length is counted in words' })
+    const reason = 'sums and lengths contain DC1 and DC3; its acknowledgements are the flow control'
+    says(() => bidirectionalFormat({ dc: true }), { setting: 'flow', value: 'dc', reason })
+    const time = 'a whole number from 0 to 3600000 is needed'
+    says(() => bidirectionalFormat({ gap: -1 }), { setting: 'gap', value: -1, reason: time })
   })
 
   it('any body, in any pieces, with any options', () => {

@@ -39,6 +39,24 @@ describe('MELSEC buffer memory', () => {
     assert.deepEqual(fromBufferMemory([1, 0x4241], { end, storeEnd: true }), Buffer.from('AB'))
     assert.deepEqual(fromBufferMemory([1, 0x0041], { end, storeEnd: true, unit: 'byte' }), Buffer.from('A'))
     assert.deepEqual(fromBufferMemory([1, 0x4241], { storeEnd: true }), Buffer.from('AB'))
+    assert.deepEqual(fromBufferMemory([1, 0x0041], { storeEnd: true }), Buffer.from('A\0'))
+    assert.deepEqual(fromBufferMemory([2, 0x4241, 0x0a0d], { end }), Buffer.from('AB\r\n'))
+    // 0AH 00H is no end code where bytes are counted
+    assert.deepEqual(
+      fromBufferMemory([4, 0x0d41, 0x000a], { end, storeEnd: true, unit: 'byte' }),
+      Buffer.from('A\r\n\0')
+    )
+    assert.deepEqual(fromBufferMemory([1, 0xffff]), Buffer.from([255, 255]))
+  })
+
+  it('says what is wrong', () => {
+    const item = 'the buffer memory'
+    assert.throws(() => fromBufferMemory([]), { details: { item, value: [], reason: 'a count and words are needed' } })
+    const few = { item, value: [2, 1], reason: '2 words are counted, 1 words are there' }
+    assert.throws(() => fromBufferMemory([2, 1]), { details: few })
+    assert.throws(() => toBufferMemory(Buffer.alloc(9), { most: 4 }), {
+      details: { what: 'the message', got: 9, most: 8 }
+    })
   })
 
   it('takes the rest of the area, and nothing that is no image', () => {

@@ -5,7 +5,7 @@ const { fromAscii, toAscii } = require('../../../lib/codec/melsec/ascii-binary')
 const convert = require('../../../lib/codec/melsec/convert')
 const { IMAGE, TEXT, bytes } = require('../../vectors/melsec')
 
-const { ENCODINGS, bytesToValue, bytesToWords, decodeText, encodeText, valueToBytes, wordsToBytes } = convert
+const { ENCODINGS, FORMATS, bytesToValue, bytesToWords, decodeText, encodeText, valueToBytes, wordsToBytes } = convert
 const code = wanted => error => error.code === wanted
 const to = (value, format = 'text', encoding = 'latin1') => valueToBytes(value, { format, encoding })
 
@@ -68,6 +68,29 @@ describe('MELSEC values', () => {
     }
   })
 
+  it('a refusal says what is wrong', () => {
+    const says = (value, format, reason, encoding) =>
+      assert.throws(
+        () => to(value, format, encoding),
+        error => error.code === 'BAD_VALUE' && error.details.reason === reason
+      )
+    assert.throws(() => to({}), { code: 'BAD_VALUE', message: /^the message cannot take the value/ })
+    says('A가', 'text', '"가" cannot be written in latin1')
+    says('é', 'text', '"é" cannot be written in euc-kr', 'euc-kr')
+    says('\ud800', 'text', 'it has half a character', 'utf8')
+    says({}, 'text', 'text, a number or a Buffer is needed; for an array of numbers choose the format bytes or words')
+    says(12n, 'text', 'text, a number or a Buffer is needed; for an array of numbers choose the format bytes or words')
+    says('12', 'bytes', 'a Buffer or an array of bytes is needed')
+    says('12', 'words', 'an array of words, one word or a Buffer is needed')
+    says([256], 'bytes', 'bytes are whole numbers from 0 to 255')
+    says([65536], 'words', 'words are whole numbers from -32768 to 65535')
+  })
+
+  it('the formats and encodings that can be set', () => {
+    assert.deepEqual([...FORMATS], ['text', 'bytes', 'words'])
+    assert.deepEqual([...ENCODINGS], ['latin1', 'utf8', 'ascii', 'euc-kr', 'shift_jis'])
+  })
+
   it('what is too long is not even copied', () => {
     const long = (value, format, most) => () => valueToBytes(value, { format, encoding: 'latin1', most })
     const cases = [
@@ -89,7 +112,11 @@ describe('MELSEC values', () => {
 
   it('bytes that are no characters are told', () => {
     assert.deepEqual(decodeText(bytes('41 C1'), 'ascii'), { text: 'A\ufffd', valid: false })
+    assert.deepEqual(decodeText(bytes('41 80'), 'ascii'), { text: 'A\ufffd', valid: false })
+    assert.deepEqual(decodeText(bytes('41 7F'), 'ascii'), { text: 'A\x7f', valid: true })
     assert.equal(decodeText(bytes('ED 95'), 'utf8').valid, false)
+    assert.deepEqual(bytesToValue(bytes('B0'), { format: 'text', encoding: 'euc-kr' }).valid, false)
+    assert.deepEqual(bytesToValue(bytes('B0'), { format: 'bytes', encoding: 'euc-kr' }).valid, true)
     assert.equal(decodeText(bytes('EF BF BD'), 'utf8').valid, true)
     assert.equal(decodeText(bytes('B0'), 'euc-kr').valid, false)
     assert.equal(decodeText(bytes('EF BB BF 41'), 'utf8').text.length, 2)
@@ -122,6 +149,64 @@ describe('MELSEC values', () => {
         { numRuns: 50 }
       )
     }
+  })
+})
+
+describe('MELSEC encodings of two bytes', () => {
+  // the tables are made at the first use: here by a module of its own
+  const file = require.resolve('../../../lib/codec/melsec/convert')
+  const anew = () => {
+    const old = require.cache[file]
+    delete require.cache[file]
+    const fresh = require(file)
+    require.cache[file] = old
+    return fresh
+  }
+  const span = (from, last) => Array.from({ length: last - from + 1 }, (_, n) => from + n)
+  const characterOf = (encoding, pair) => new TextDecoder(encoding).decode(Buffer.from(pair))
+
+  it('EUC-KR: ASCII, all of hangul and hanja of KS X 1001', () => {
+    const fresh = anew()
+    const pairs = [
+      ...span(0xb0, 0xc8).flatMap(lead => span(0xa1, 0xfe).map(trail => [lead, trail])),
+      ...span(0xca, 0xfd).flatMap(lead => span(0xa1, 0xfe).map(trail => [lead, trail]))
+    ]
+    for (const pair of pairs) {
+      const character = characterOf('euc-kr', pair)
+      assert.deepEqual([...fresh.encodeText(character, 'euc-kr')], pair, character)
+    }
+    for (const byte of span(0, 0x7f)) {
+      assert.deepEqual([...fresh.encodeText(String.fromCharCode(byte), 'euc-kr')], [byte])
+    }
+    for (const none of ['\x80', '\xff', '\ufffd', 'é', 'ｱ', '😀'])
+      assert.throws(() => fresh.encodeText(none, 'euc-kr'), code('BAD_VALUE'), none)
+  })
+
+  it('Shift JIS: ASCII, half width, JIS X 0208 level 1 and the IBM extension', () => {
+    const fresh = anew()
+    const trails = [...span(0x40, 0x7e), ...span(0x80, 0xfc)]
+    const pairs = [
+      ...span(0x89, 0x97).flatMap(lead => trails.map(trail => [lead, trail])),
+      ...span(0xe0, 0xe9).flatMap(lead => trails.map(trail => [lead, trail])),
+      ...span(0xfb, 0xfb).flatMap(lead => span(0x80, 0xfc).map(trail => [lead, trail]))
+    ]
+    for (const pair of pairs) {
+      const character = characterOf('shift_jis', pair)
+      assert.deepEqual([...fresh.encodeText(character, 'shift_jis')], pair, character)
+    }
+    for (const byte of [...span(0, 0x7f), ...span(0xa1, 0xdf)]) {
+      assert.deepEqual([...fresh.encodeText(characterOf('shift_jis', [byte]), 'shift_jis')], [byte])
+    }
+    for (const none of ['\x80', '\ufffd', '가', 'é'])
+      assert.throws(() => fresh.encodeText(none, 'shift_jis'), code('BAD_VALUE'), none)
+  })
+
+  it('a table is made once', () => {
+    const fresh = anew()
+    fresh.encodeText('가', 'euc-kr')
+    const start = process.hrtime.bigint()
+    for (let n = 0; n < 100; n++) fresh.encodeText('가', 'euc-kr')
+    assert.ok(process.hrtime.bigint() - start < 100e6)
   })
 })
 

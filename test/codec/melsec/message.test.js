@@ -81,6 +81,61 @@ describe('MELSEC messages, received', () => {
     ])
   })
 
+  it('the rest of it ends where a message ends, however long it is', () => {
+    const first = text('START:')
+    for (let length = 5; length < 400; length++) {
+      const junk = '1'.repeat(length)
+      assert.deepEqual(cut(`${junk}\r\nOK\r\n`, { most: 4 }), ['tooLong:1111', 'OK'], `${length}`)
+      const options = { most: 4, first }
+      assert.deepEqual(cut(`START:${junk}\r\nSTART:OK\r\n`, options), ['tooLong:1111', 'OK'], `${length}`)
+      assert.deepEqual(cut(`START:${junk}START:OK\r\n`, options), ['tooLong:1111', 'OK'], `${length}`)
+      const hex = `${'31'.repeat(length)}0D0A4F4B0D0A`
+      assert.deepEqual(cut(hex, { most: 4, asciiBinary: true }), ['tooLong:1111', 'OK'], `${length}`)
+    }
+    // exactly as many as a message may have, and half of the end code: the next one was lost
+    assert.deepEqual(cut('12345\r\nOK\r\n', { most: 4 }), ['tooLong:1234', 'OK'])
+    assert.deepEqual(cut('123456\r\nOK\r\n', { most: 4 }), ['tooLong:1234', 'OK'])
+    const escaped = { most: 4, transparent: bytes('10'), end: bytes('0A 0B') }
+    assert.deepEqual(cut('12345\x10\n\x0b56\n\x0bOK\n\x0b', escaped), ['tooLong:1234', 'OK'], 'data is no end')
+  })
+
+  it('without an end code only silence ends the rest', () => {
+    const options = { framing: 'gap', gap: 5, most: 4, first: STX }
+    assert.deepEqual(cut('\x0212345\x02AB', options, { flush: true }), ['tooLong:1234'])
+    assert.deepEqual(cut('\x02A\x02B', options, { flush: true }), ['A\x02B'])
+  })
+
+  it('a count means nothing to another framing, nor a first frame inside so many bytes', () => {
+    assert.deepEqual(cut('ABCD\r\n', { count: 2 }), ['ABCD'])
+    const counted = { framing: 'count', count: 3, first: STX, last: ETX }
+    assert.deepEqual(cut('\x02A\x02B\x02CDE', counted), ['A\x02B', 'CDE'])
+  })
+
+  it('stray bytes are told in parts that are no longer than a message', () => {
+    assert.deepEqual(cut('xxxx', { ...frames, most: 4 }), [])
+    assert.deepEqual(cut('xxxxx', { ...frames, most: 4 }), ['stray:xxxx'])
+    assert.deepEqual(cut('abcdefg\x02A\x03', { ...frames, most: 4 }), ['stray:abcd', 'stray:efg', 'A'])
+    assert.deepEqual(splitter(frames).flush(), [])
+  })
+
+  it('what is held, and what is told', () => {
+    const one = splitter({ asciiBinary: true, most: 2 })
+    const held = (wire, splitting = one) => {
+      splitting.push(text(wire))
+      return splitting.held
+    }
+    assert.deepEqual([held('4'), held('1'), held('0')], [1, 1, 2])
+    assert.ok(held('x') > 0, 'the rest of what was given up')
+    const framed = splitter(frames)
+    assert.deepEqual([held('\x02', framed), held('A', framed), held('\x02', framed)], [1, 2, 1])
+    const escaping = splitter({ transparent: bytes('10') })
+    assert.equal(held('\x10', escaping), 1)
+    assert.deepEqual(splitter(frames).push(text('x\x02A\x03')), [
+      { kind: 'damaged', bytes: text('x'), complete: false, reason: 'stray' },
+      { kind: 'data', bytes: text('A'), complete: true }
+    ])
+  })
+
   it('after a message of 100,000 bytes the next one is whole', () => {
     const long = 'x'.repeat(100000)
     assert.deepEqual(cut(`${long}\r\nNEXT\r\n`, { most: 100000 }), [long, 'NEXT'])
@@ -185,6 +240,32 @@ describe('MELSEC messages, sent', () => {
     assert.deepEqual(encode('A\r\nB', { framing: 'count', count: 1 }), bytes('41 0D 0A 42'))
   })
 
+  it('says where, and why', () => {
+    const says = (body, options, details) =>
+      assert.throws(() => encode(body, options), { code: 'END_CODE_INSIDE', details })
+    says('A\r\nB', {}, { code: '0D 0A', at: 1, reason: 'it would be cut there' })
+    says('ABC\r', {}, { code: '0D 0A', at: 3, reason: 'its last bytes are the beginning of the end code' })
+    says('\r', {}, { code: '0D 0A', at: 0, reason: 'its last bytes are the beginning of the end code' })
+    says('ABJ\x02', frames, { code: '02', at: 3, reason: 'it is the first frame, where a message begins' })
+    says(
+      'A',
+      { end: bytes('41 BC') },
+      { code: '41 BC', at: 0, reason: 'its last bytes are the beginning of the end code' }
+    )
+    const odd = { count: 3, reason: 'with user frames the module counts whole words and drops the last byte' }
+    for (const options of [{ first: STX }, { last: ETX }, frames]) {
+      assert.throws(() => encode('ABC', options), { code: 'ODD_COUNT', details: odd })
+    }
+    assert.throws(() => encode('ABC', { most: 2 }), { details: { what: 'the message', got: 3, most: 2 } })
+    assert.throws(() => encode('', frames), {
+      details: { item: 'the message', value: '', reason: 'it is empty, and no end code would be sent' }
+    })
+  })
+
+  it('without an end code a first frame may stand inside', () => {
+    assert.deepEqual(encode('A\x02', { framing: 'gap', gap: 5, first: STX }), bytes('02 41 02'))
+  })
+
   it('refuses codes of the flow control, or makes them transparent', () => {
     assert.throws(() => encode('\x11', { dc: true }), { code: 'FLOW_CODE_INSIDE', message: /DC1/ })
     assert.throws(() => encode('A\x13B', { dc: true }), { code: 'FLOW_CODE_INSIDE', message: /DC3/ })
@@ -228,6 +309,46 @@ describe('MELSEC messages, sent', () => {
   for (const [name, options] of Object.entries(wrong)) {
     it(`settings: ${name}`, () => assert.throws(() => messageFormat(/** @type {any} */ (options)), code('BAD_SETTING')))
   }
+
+  it('settings: says which, and why', () => {
+    const cases = [
+      [{ framing: 'line' }, 'framing', 'line', 'known are end, count, gap'],
+      [{ end: bytes('0D 0A AB') }, 'end', '0D0AAB', 'the receive complete code has 1 or 2 bytes'],
+      [{ end: Buffer.alloc(0) }, 'end', 'empty', 'this framing needs an end code or a last frame'],
+      [{ framing: 'count' }, 'count', 0, 'a whole number from 1 to 1000000 is needed'],
+      [{ framing: 'count', count: 6, most: 5 }, 'count', 6, 'it is more than most, 5'],
+      [{ framing: 'gap' }, 'gap', 0, 'this framing needs a time of silence'],
+      [{ gap: 1.5 }, 'gap', 1.5, 'a whole number from 0 to 3600000 is needed'],
+      [{ most: 0 }, 'most', 0, 'a whole number from 1 to 1000000 is needed'],
+      [{ first: Buffer.alloc(81, 1) }, 'first', '01'.repeat(81), 'a user frame has 80 bytes at most'],
+      [{ last: Buffer.alloc(81, 1) }, 'last', '01'.repeat(81), 'a user frame has 80 bytes at most'],
+      [{ end: bytes('13'), dc: true }, 'end', '13', 'DC1 and DC3 are taken by the flow control'],
+      [{ first: bytes('11'), dc: true }, 'first', '11', 'DC1 and DC3 are taken by the flow control'],
+      [
+        { first: bytes('10'), transparent: bytes('10') },
+        'first',
+        '10',
+        'it contains the additional code, which is removed'
+      ],
+      [{ transparent: bytes('10 0A') }, 'end', '0D0A', 'it contains a transparent code, and would be taken for data'],
+      [{ transparent: bytes('11') }, 'transparent', '11', 'DC1 and DC3 are what it has to make transparent'],
+      [{ transparent: bytes('13 02') }, 'transparent', '1302', 'DC1 and DC3 are what it has to make transparent'],
+      [{ first: bytes('02 03'), last: ETX }, 'first', '0203', 'it cannot be told from what ends a message'],
+      [{ first: ETX, last: bytes('02 03') }, 'first', '03', 'it cannot be told from what ends a message']
+    ]
+    for (const [options, setting, value, reason] of cases) {
+      assert.throws(() => messageFormat(options), { code: 'BAD_SETTING', details: { setting, value, reason } })
+    }
+  })
+
+  it('settings: what is just allowed', () => {
+    assert.deepEqual(messageFormat({ end: undefined, most: undefined }), messageFormat())
+    assert.equal(messageFormat({ framing: 'count', count: 5, most: 5 }).count, 5)
+    assert.equal(messageFormat({ count: 5, most: 4 }).framing, 'end')
+    assert.deepEqual(messageFormat({ end: Buffer.alloc(0), last: ETX }).marker, ETX)
+    assert.equal(messageFormat({ framing: 'gap', gap: 5, end: Buffer.alloc(0) }).silence, 5)
+    assert.match(messageFraming(messageFormat()).key, /^melsec framing=end count=0 most=16384 /)
+  })
 
   it('what goes out comes in: any body that is not refused, in any pieces', () => {
     const options = fc.record({

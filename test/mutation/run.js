@@ -51,7 +51,7 @@ const options = ({ name, mutate, spec, jobs }) => ({
   allowEmpty: false,
   allowConsoleColors: false,
   checkers: [],
-  reporters: ['clear-text', 'json'],
+  reporters: ['progress-append-only', 'clear-text', 'json'],
   clearTextReporter: { allowColor: false, logTests: false, reportTests: false, reportScoreTable: true },
   jsonReporter: { fileName: path.join(REPORTS, `${name}.json`) }
 })

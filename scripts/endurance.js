@@ -8,6 +8,7 @@
  *   npm run endurance -- c24messages [10000] so many messages each way on a line that damages bytes; what was lost, doubled, wrong
  *   npm run endurance -- c24random [1000000] so many random inputs for everything that reads bytes of a C24 port
  *   npm run endurance -- inconrandom [1000000] the same for lines of an INCON controller
+ *   npm run endurance -- frames [10000000]   so many damaged answers of each protocol, by class; what is claimed must not be taken once
  *   npm run endurance -- coverage [lib/codec] which branches no test takes, and why; a folder below its limit is a failure
  *   npm run endurance -- mutation [lib/codec] changes the code at each place; fewer than 85 % of them noticed by the tests is a failure.
  *                                             A folder or a pattern of files below lib/codec or lib/line; Stryker is installed for it
@@ -98,6 +99,23 @@ const RUNS = {
     const { inconRandom } = require(path.join(support, 'incon-random.js'))
     print(JSON.stringify(inconRandom({ inputs: whole(inputs, 'inputs') })))
     print(`no exception, heap ${Math.round(process.memoryUsage().heapUsed / 1e6)} MB`)
+  },
+
+  /** @param {string} [count] */
+  async frames(count = '10000000') {
+    const frames = whole(count, 'frames')
+    const { damaged, unexplained } = require(path.join(support, 'damage.js'))
+    const surprises = []
+    for (const protocol of ['nx', 'rtu', 'ascii']) {
+      const rows = damaged({ protocol, frames })
+      for (const { name, expected, ...row } of rows) {
+        const theory = expected === 0 ? '0 claimed' : `${expected.toFixed(1)} by theory`
+        print(`${protocol}, ${name}: ${row.frames} frames, ${row.wrong} wrong, ${theory}, ${row.right} answers found all the same`)
+      }
+      surprises.push(...unexplained(rows).map(({ name }) => `${protocol}, ${name}`))
+    }
+    if (surprises.length > 0) throw new Error(`not as claimed or by theory: ${surprises.join('; ')}`)
+    print('nothing that is claimed was taken, all else as by theory')
   },
 
   /** @param {string} [folder] */

@@ -25,7 +25,7 @@ const LISTENERS = {
       ...['priority', 'repeatAfter', 'repeatWithin']
     ]
   },
-  'incon-link': { title: 'INCON', shared: ['most', 'silence', 'checked', 'encoding'] }
+  'incon-link': { title: 'INCON', shared: ['most', 'silence', 'checked', 'acknowledge', 'encoding'] }
 }
 
 const shown = value => (value === '' ? 'none' : value)

@@ -172,9 +172,13 @@ const PROPERTIES = {
     line: node(),
     encoding: choice('ascii', 'ascii', 'latin1', 'utf8'),
     checked: flag(),
+    acknowledge: flag(),
+    ackTimeout: number(1000, 10, 600000),
+    attempts: number(5, 1, 100),
     most: number(256, 2, 4096),
     silence: number(200, 0, 60000),
     ...SENDING,
+    scan: number(100, 0, 10000),
     quiet: number(50, 0, 60000),
     before: number(5, 0, 60000)
   },
@@ -269,12 +273,15 @@ const unusedByC24 = (name, { framing = 'end', bidirectional = false }) => {
   return BIDIRECTIONAL.includes(name) || (Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing)
 }
 
+const ACKNOWLEDGED = ['ackTimeout', 'attempts']
+
 /**
  * Whether a property counts at all with the others as they are.
  * @param {string} type @param {string} name @param {Record<string, any>} config
  */
 const applies = (type, name, config) => {
   if (type === 'melsec-c24') return !unusedByC24(name, config)
+  if (type === 'incon-link') return !ACKNOWLEDGED.includes(name) || isOn(config.acknowledge)
   if (type === 'plc-line') return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || 'serial')
   return type !== 'chino-regulator' || !unused(config.mode || 'read', name)
 }

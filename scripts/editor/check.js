@@ -108,6 +108,9 @@ const checkGap = (node, value) =>
   t('problem.needsGap')
 const checkFlow = (node, value) => value !== 'dc' || !truthy(current(node, 'bidirectional')) || t('problem.noDc')
 
+const checkAcknowledge = (node, value) =>
+  !truthy(value) || truthy(current(node, 'checked')) || t('problem.needsChecked')
+
 /** Checks beyond a property's own row; they throw a PlcError or answer a text. */
 const MORE = {
   'nx-config': {
@@ -155,7 +158,10 @@ const MORE = {
     gap: checkGap,
     flow: checkFlow
   },
-  'incon-link': { line: node => lineOfListener(node, name => current(node, name)) }
+  'incon-link': {
+    line: node => lineOfListener(node, name => current(node, name)),
+    acknowledge: checkAcknowledge
+  }
 }
 
 const isEmpty = value => value === undefined || value === null || value === ''

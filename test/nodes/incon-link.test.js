@@ -19,6 +19,7 @@ const link = (more = {}) => ({
   name: 'machine',
   ...ON_TAB,
   line: 'line',
+  scan: '0',
   quiet: '20',
   wires: [['out'], ['written'], ['failed']],
   ...more

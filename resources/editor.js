@@ -168,9 +168,13 @@ var nxlineSerialPlc = (() => {
           line: node(),
           encoding: choice("ascii", "ascii", "latin1", "utf8"),
           checked: flag(),
+          acknowledge: flag(),
+          ackTimeout: number(1e3, 10, 6e5),
+          attempts: number(5, 1, 100),
           most: number(256, 2, 4096),
           silence: number(200, 0, 6e4),
           ...SENDING,
+          scan: number(100, 0, 1e4),
           quiet: number(50, 0, 6e4),
           before: number(5, 0, 6e4)
         },
@@ -238,8 +242,10 @@ var nxlineSerialPlc = (() => {
         if (isOn(bidirectional)) return UNIDIRECTIONAL.includes(name);
         return BIDIRECTIONAL.includes(name) || Boolean(FRAMINGS[name]) && FRAMINGS[name] !== framing;
       };
+      var ACKNOWLEDGED = ["ackTimeout", "attempts"];
       var applies = (type, name, config) => {
         if (type === "melsec-c24") return !unusedByC24(name, config);
+        if (type === "incon-link") return !ACKNOWLEDGED.includes(name) || isOn(config.acknowledge);
         if (type === "plc-line") return !TRANSPORTS[name] || TRANSPORTS[name] === (config.transport || "serial");
         return type !== "chino-regulator" || !unused(config.mode || "read", name);
       };
@@ -273,7 +279,7 @@ var nxlineSerialPlc = (() => {
             ...["priority", "repeatAfter", "repeatWithin"]
           ]
         },
-        "incon-link": { title: "INCON", shared: ["most", "silence", "checked", "encoding"] }
+        "incon-link": { title: "INCON", shared: ["most", "silence", "checked", "acknowledge", "encoding"] }
       };
       var shown = (value) => value === "" ? "none" : value;
       var valueOf = ({ type, settings }, name) => readProperty(PROPERTIES[type][name], settings[name]).value;
@@ -2819,6 +2825,7 @@ var nxlineSerialPlc = (() => {
       var checkCount = (_node, value) => Number(value) > 0 || t("problem.needsCount");
       var checkGap = (node, value) => truthy(current(node, "bidirectional")) || current(node, "framing") !== "gap" || Number(value) > 0 || t("problem.needsGap");
       var checkFlow = (node, value) => value !== "dc" || !truthy(current(node, "bidirectional")) || t("problem.noDc");
+      var checkAcknowledge = (node, value) => !truthy(value) || truthy(current(node, "checked")) || t("problem.needsChecked");
       var MORE = {
         "nx-config": {
           station: checkPlcNumber,
@@ -2865,7 +2872,10 @@ var nxlineSerialPlc = (() => {
           gap: checkGap,
           flow: checkFlow
         },
-        "incon-link": { line: (node) => lineOfListener(node, (name) => current(node, name)) }
+        "incon-link": {
+          line: (node) => lineOfListener(node, (name) => current(node, name)),
+          acknowledge: checkAcknowledge
+        }
       };
       var isEmpty = (value) => value === void 0 || value === null || value === "";
       var verdict = (type, { name, node, value }) => {
@@ -3829,7 +3839,14 @@ var nxlineSerialPlc = (() => {
         $(".nxline-driver").toggle(value("flow") === "driver");
         $(".nxline-held").toggle(value("flow") !== "none");
       };
-      var showLink = () => $(".nxline-checked").toggle(isTicked("checked"));
+      var showLink = () => {
+        const checked = isTicked("checked");
+        if (!checked) field("acknowledge").prop("checked", false);
+        const acks = isTicked("acknowledge");
+        $(".nxline-checked").toggle(checked);
+        $(".nxline-acks").toggle(acks);
+        $(".nxline-pauses").toggle(acks || value("access") !== "read");
+      };
       var SHOW = { "melsec-c24": showC24, "incon-link": showLink };
       var showAccess = () => {
         const sends = value("access") !== "read";
@@ -3846,7 +3863,8 @@ var nxlineSerialPlc = (() => {
           SHOW[type]();
           showAccess();
         };
-        for (const name of ["bidirectional", "framing", "format", "flow", "checked", "access"]) field(name).on("change", show);
+        const deciding = ["bidirectional", "framing", "format", "flow", "checked", "acknowledge", "access"];
+        for (const name of deciding) field(name).on("change", show);
         for (const name of ["bidirectional", "framing"])
           field(name).on("change", () => COUNTS.forEach((each) => field(each).trigger("change")));
         if (type === "melsec-c24") {

@@ -49,6 +49,10 @@ class InconTalk {
   /** @type {Set<number>} acknowledgements that wait */
   #acks = new Set()
   #own = 0
+  /** when we were last heard by ourselves */
+  #echoAt = -Infinity
+  /** @type {Buffer|null} our start, always the same */
+  #startLine = null
   /** @type {Port|null} who owes the other side an acknowledgement of its start */
   #owed = null
 
@@ -84,7 +88,7 @@ class InconTalk {
   #understand({ kind, number, bytes }, port) {
     const flight = this.#flight
     if (kind === 'ack' && flight?.begun && flight.number === number) flight.finish({ kind: 'ack' })
-    if (flight?.isHeard({ kind, number, bytes })) return this.#hearOwn(flight)
+    if (this.#isOwn({ kind, number, bytes })) return this.#hearOwn(kind)
     if (kind === 'start') this.#otherStarted(port)
     if (kind !== 'data') return null
     if (this.#started) return judge(this.#reception, { number, text: bytes })
@@ -99,13 +103,19 @@ class InconTalk {
     this.#heard.taken = true
   }
 
+  #isOwn(message) {
+    const isOurStart = message.kind === 'start' && this.#startLine !== null && message.bytes.equals(this.#startLine)
+    return isOurStart || Boolean(this.#flight?.isHeard(message))
+  }
+
   /** Where the adapter hears itself our own acknowledgement would confirm a line of ours. */
-  #hearOwn(flight) {
+  #hearOwn(kind) {
     this.#own++
     // a start has a text that the other side cannot know; two lines may happen to be alike
-    if (flight.number !== START && this.#own < OWN) return null
+    if (kind !== 'start' && this.#own < OWN) return null
     this.#started = false
-    flight.finish({ kind: 'echo' })
+    this.#echoAt = this.#clock.now()
+    this.#flight?.finish({ kind: 'echo' })
     return null
   }
 
@@ -163,8 +173,10 @@ class InconTalk {
   /** @param {Port} port @returns {Promise<any>} null, or why the other side does not know of our start */
   async #start(port) {
     if (this.#started) return null
-    const mark = Math.floor(port.random() * 1e6).toString(36)
-    const line = seal(Buffer.from(mark), START)
+    // an acknowledgement of what the adapter heard may still come
+    if (this.#clock.now() < this.#echoAt + port.settings.ackTimeout) return { kind: 'echo' }
+    const line = this.#startLine ?? seal(Buffer.from(Math.floor(port.random() * 1e6).toString(36)), START)
+    this.#startLine = line
     const flight = new Flight({ number: START, line, text: line, port })
     const end = await this.#fly(flight, 0)
     this.#started = end.kind === 'ack'

@@ -47,7 +47,16 @@ const showC24 = () => {
   $('.nxline-held').toggle(value('flow') !== 'none')
 }
 
-const showLink = () => $('.nxline-checked').toggle(isTicked('checked'))
+const showLink = () => {
+  const checked = isTicked('checked')
+  // what cannot be without it must not stay behind it
+  if (!checked) field('acknowledge').prop('checked', false)
+  const acks = isTicked('acknowledge')
+  $('.nxline-checked').toggle(checked)
+  $('.nxline-acks').toggle(acks)
+  // acknowledgements are sent, too
+  $('.nxline-pauses').toggle(acks || value('access') !== 'read')
+}
 
 const SHOW = { 'melsec-c24': showC24, 'incon-link': showLink }
 
@@ -70,7 +79,8 @@ const editListener = node => {
     SHOW[type]()
     showAccess()
   }
-  for (const name of ['bidirectional', 'framing', 'format', 'flow', 'checked', 'access']) field(name).on('change', show)
+  const deciding = ['bidirectional', 'framing', 'format', 'flow', 'checked', 'acknowledge', 'access']
+  for (const name of deciding) field(name).on('change', show)
   // what counts depends on them: let the others be judged again
   for (const name of ['bidirectional', 'framing'])
     field(name).on('change', () => COUNTS.forEach(each => field(each).trigger('change')))

@@ -153,7 +153,7 @@ class Line extends EventEmitter {
 
   /** Tells all who listen of something that was noticed: `{ event, station, cause, remedy, … }`. */
   report(event) {
-    const whole = { since: this.#clock.wall(), ...event }
+    const whole = { ...event, since: event.since ?? this.#clock.wall() }
     this.#evidence?.event(whole)
     this.emit('event', whole)
   }

@@ -344,4 +344,20 @@ describe('line: monitor', () => {
     )
     monitor.stop()
   })
+
+  it('demoted stations: counted as soon as a device tells it', async () => {
+    const { clock, pool, wire, lease, run } = createBench({ onQuery: answering })
+    const how = []
+    const monitor = pool.monitor({ transport: 'simulated', wire }, { condition: ({ demoted }) => how.push(demoted) })
+    await clock.advance(1)
+    await run(lease.run(() => toy.ask(1), { station: 1 }))
+    lease.line.memory(1).health = { state: 'demoted', since: 5 }
+    lease.line.report({ event: 'stationDemoted', station: 1, code: 'TIMEOUT' })
+    assert.deepEqual(monitor.statistics().demoted, ['1'])
+    lease.line.memory(1).health = { state: 'online', since: 6 }
+    lease.line.report({ event: 'stationBack', station: 1 })
+    assert.deepEqual(how, [0, 0, 1, 0])
+    assert.deepEqual(monitor.statistics().demoted, [])
+    monitor.stop()
+  })
 })

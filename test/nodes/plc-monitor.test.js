@@ -17,7 +17,8 @@ const {
   reader,
   statuses,
   tick,
-  until
+  until,
+  writer
 } = require('./bench')
 const { keepEvidence, sharedPool } = require('../../nodes/pool')
 const { statusOf } = require('../../nodes/status')
@@ -251,4 +252,38 @@ describe('plc-monitor', () => {
       assert.equal(sharedPool().lines()[0].line.listenerCount('event'), listeners - 1)
     })
   }
+
+  it('a record of each write that goes over the line', async () => {
+    const nodes = [lineNode(wire), plcNode({ access: 'write' }), writer({ target: 'K0' }), monitor({ events: 'audit' })]
+    const { events, out } = await loadWatched(nodes)
+    await until(() => sharedPool().lines()[0]?.line.state === 'open', 'the line')
+    helper.getNode('write').receive({ payload: 5, _msgid: 'm1' })
+    await until(() => out.length > 0 && events.length > 0, 'the write and its record')
+    const { by, outcome, items } = events[0].payload
+    assert.deepEqual(
+      [by.node, by.message, outcome, items[0].item, items[0].value],
+      ['write', 'm1', 'confirmed', 'K0', 5]
+    )
+  })
+
+  it('a station that is demoted and comes back: events, statistics, status', async () => {
+    wire.wire.setOff(1, true)
+    const dead = plcNode({ timeout: '20', demoteAfter: '2', probeFirst: '100' })
+    const { events, statistics } = await loadWatched([
+      lineNode(wire),
+      dead,
+      reader({ items: ['M0'], interval: '20' }),
+      monitor()
+    ])
+    await until(() => topics(events).includes('stationDemoted'), 'the end of asking')
+    const { station, code, cause, remedy, nextProbe } = events[0].payload
+    assert.deepEqual([station, code, typeof nextProbe], [1, 'TIMEOUT', 'number'])
+    assert.ok(cause && remedy)
+    ask({})
+    await until(() => statistics.length > 0, 'statistics')
+    assert.deepEqual([statistics[0].payload.demoted, statistics[0].payload.stations[1].health], [['1'], 'demoted'])
+    wire.wire.setOff(1, false)
+    await until(() => topics(events).includes('stationBack'), 'the station')
+    assert.ok(events.find(({ topic }) => topic === 'stationBack').payload.downFor > 0)
+  })
 })

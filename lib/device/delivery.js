@@ -174,9 +174,12 @@ class Delivery {
       throw caught
     }
     course.reached = next + 1
-    if (next > 0) return this.#intervals.again(course.marks[next])
     // all at once: another write of its words must not come in between
-    course.marks = job.prepared.requests.map((_, at) => this.#intervals.mark(this.#pointsOf(job, at, true), course.by))
+    if (next === 0)
+      course.marks = job.prepared.requests.map((_, at) =>
+        this.#intervals.mark(this.#pointsOf(job, at, true), course.by)
+      )
+    return () => this.#intervals.again(course.marks[next])
   }
 
   /** The first request stands for the whole write: nothing of it goes out if a later one must not. */

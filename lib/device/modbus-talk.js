@@ -4,6 +4,7 @@ const { placeOf } = require('../codec/modbus/address')
 const { describeQuery } = require('../codec/modbus/answer')
 const { readDialog, writeDialog } = require('../codec/modbus/dialog')
 const { readFunction, writeFunction } = require('../codec/modbus/functions')
+const { announced } = require('./announced')
 const { exchange } = require('./modbus-exchange')
 
 /**
@@ -90,8 +91,9 @@ class ModbusTalk {
   }
 
   /**
-   * @param {() => { query: any, item: string, before?: (ask: (request: any) => Generator<any, any[], Buffer>) => Generator<any, void, Buffer> }} take
-   *   called when its turn has come: the latest value goes out; `before` comes first, in the same conversation, and may read
+   * @param {() => { query: any, item: string, before?: (ask: (request: any) => Generator<any, any[], Buffer>) => Generator<any, () => void, Buffer> }} take
+   *   called when its turn has come: the latest value goes out; `before` comes first, in the same conversation, may read, and returns what is to
+   *   be called when a frame goes out
    * @param {{ priority: number }} options
    * @returns {Promise<true>}
    * @throws {PlcError} (rejects) MODBUS_…, WRITE_UNKNOWN, BROADCAST_UNCONFIRMED; `details.sent` of others: whether a frame that writes went out
@@ -128,14 +130,14 @@ class ModbusTalk {
   }
 
   *#writing({ query: request, item, before = /** @type {any} */ (null) }, facts) {
-    if (before) yield* before(each => this.#reading(each))
+    const sent = before && (yield* before(each => this.#reading(each)))
     const { functions, station, broadcast } = this.#settings
     const write = writeOf(request, functions)
     // an answer that equals the query proves nothing while the adapter may hear itself
     const probe = this.#lease.line.echo === 'unknown'
     const names = request.points.length === 1 ? () => item : describeQuery
     const options = { ...this.#options(), item, facts, probe, names, ...(broadcast ? { broadcast } : {}) }
-    const result = yield* this.#counted(writeDialog(write, options))
+    const result = yield* this.#counted(announced(writeDialog(write, options), sent))
     if (station !== 0) return result.values
     this.#counts.broadcasts++
     throw new PlcError('BROADCAST_UNCONFIRMED', { item, line: this.#lease.line.name })

@@ -1,6 +1,7 @@
 'use strict'
 const { masterIds } = require('../codec/nx/ids')
 const { readDialog, writeDialog } = require('../codec/nx/dialog')
+const { announced } = require('./announced')
 const { createMasterWatch } = require('./master-watch')
 
 /**
@@ -69,8 +70,9 @@ class Talk {
   }
 
   /**
-   * @param {() => { query: any, item: string, before?: (ask: (query: any) => Generator<any, any[], Buffer>) => Generator<any, void, Buffer> }} take
-   *   called when its turn has come: the latest value goes out; `before` comes first, in the same conversation, and may read
+   * @param {() => { query: any, item: string, before?: (ask: (query: any) => Generator<any, any[], Buffer>) => Generator<any, () => void, Buffer> }} take
+   *   called when its turn has come: the latest value goes out; `before` comes first, in the same conversation, may read, and returns what is to
+   *   be called when a frame goes out
    * @param {{ priority: number }} options
    * @returns {Promise<true>}
    */
@@ -112,10 +114,10 @@ class Talk {
 
   *#writing(query, { item, before }) {
     this.#begin()
-    if (before) yield* before(each => this.#values(each))
+    const sent = before && (yield* before(each => this.#values(each)))
     const nonStandardAck = !this.#memory.openBitWrite
     if (query.ask === 'writeBits') this.#memory.openBitWrite = true
-    const result = yield* writeDialog(query, { ...this.#options(), item, nonStandardAck })
+    const result = yield* announced(writeDialog(query, { ...this.#options(), item, nonStandardAck }), sent)
     this.#note(result)
     return result
   }

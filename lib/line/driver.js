@@ -71,6 +71,7 @@ class Driver {
 
   #sent(run) {
     run.sent = true
+    run.step.sent?.()
     this.#recorder.sent(run.station, run.step.send, run.label)
   }
 

@@ -155,6 +155,44 @@ describe('write interval, NX PLC', () => {
     assert.deepEqual([b.station.get('K69'), b.station.get('K0')], [69, 5])
   })
 
+  it('of one of several frames nothing goes out if the words of a later one were written while it waited', async () => {
+    start()
+    const promises = [ask([entry('K69', 7)]), ask([entry('K0..K69', new Array(70).fill(1))])]
+    const outcomes = await b.run(Promise.all(promises))
+    assert.deepEqual(
+      outcomes.map(({ outcome, code, attempts }) => [code ?? outcome, attempts]),
+      [
+        ['confirmed', 1],
+        ['WRITE_TOO_SOON', 0]
+      ]
+    )
+    assert.equal(seen.length, 1)
+  })
+
+  it('counts from the frame that wrote the word, not from the first one of its write', async () => {
+    start()
+    await write([entry('K0..K69', new Array(70).fill(1)), entry('K0', 5)])
+    await write([entry('K0', 6)], { coalesce: true })
+    assert.equal(seen.length, 4)
+    assert.ok(gaps()[2] > INTERVAL - 1e-6, `${gaps()}`)
+  })
+
+  it('what was broken off before a byte of it went out does not count', async () => {
+    start({ plc: { writeInterval: 60000 } })
+    const promises = [ask([entry('K1', 1)]), ask([entry('K0', 1)])]
+    let first = null
+    promises[0].then(outcome => (first = outcome))
+    while (!first) await b.clock.advance(1)
+    // the silence before the next query
+    await b.clock.advance(3)
+    b.wire.unplug()
+    assert.equal((await b.run(promises[1])).outcome, 'failed')
+    b.wire.plug()
+    await b.clock.advance(6000)
+    assert.equal(short(await write([entry('K0', 1)])), 'confirmed')
+    assert.equal(short(await write([entry('K1', 1)])), 'WRITE_TOO_SOON')
+  })
+
   it('closed while one waits: failed, nothing is sent, no timer is left', async () => {
     start()
     await write([entry('K0', 1)])
@@ -163,6 +201,7 @@ describe('write interval, NX PLC', () => {
     b.device.close()
     const outcome = await b.run(waits)
     assert.deepEqual([outcome.outcome, outcome.code, outcome.attempts], ['failed', 'LINE_CLOSED', 0])
+    assert.ok(outcome.ms < 150, `after ${outcome.ms} ms`)
     await b.clock.advance(2 * INTERVAL)
     assert.equal(seen.length, 1)
   })

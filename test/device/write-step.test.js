@@ -230,7 +230,7 @@ describe('largest step of a tag, NX PLC', () => {
     }
     start({ sim: { rates, seed: 3, stations: [{ station: 1, onExecute }] } })
     const outcomes = []
-    for (let round = 0; round < 100; round++) {
+    for (let round = 0; round < 70; round++) {
       const three = ['valve', 'K12', '@0x014C'].map(name => {
         const value = Math.min(100, Math.max(0, held + random.integer(-9, 9)))
         return b.device.write([entry(name, value)], { fixed: true })
@@ -240,14 +240,14 @@ describe('largest step of a tag, NX PLC', () => {
     }
     const codes = new Set(outcomes.map(({ outcome, code }) => code ?? outcome))
     for (const code of ['confirmed', 'STEP_TOO_LARGE', 'WRITE_UNKNOWN']) assert.ok(codes.has(code), code)
-    assert.ok(moves > 30, `it moved ${moves} times`)
+    assert.ok(moves > 25, `it moved ${moves} times`)
   })
 })
 
 describe('largest step of a tag, CHINO regulator', () => {
   const tags = [
     { name: 'output', address: '400001', maxStep: 10, writable: true },
-    { name: 'limit', address: '400009', maxStep: 10, writable: true },
+    { name: 'limit', address: '400003', maxStep: 10, writable: true },
     { name: 'coils', address: '000001:uint16', maxStep: 1, writable: true }
   ]
   let b
@@ -280,11 +280,11 @@ describe('largest step of a tag, CHINO regulator', () => {
   })
 
   it('an address that is missing between two of them does not spoil the reading', async () => {
-    start({ slaves: [{ has: (_table, address) => address === 0 || address === 8 }] })
+    start({ slaves: [{ has: (_table, address) => address === 0 || address === 2 }] })
     const outcome = await b.write([entry('output', 3), entry('limit', 4)])
     assert.equal(outcome.outcome, 'confirmed', outcome.text)
     assert.equal(writes().length, 2)
-    assert.deepEqual([...b.slave.values('hr', 0, 1), ...b.slave.values('hr', 8, 1)], [3, 4])
+    assert.deepEqual([...b.slave.values('hr', 0, 1), ...b.slave.values('hr', 2, 1)], [3, 4])
   })
 
   it('an address that the station does not have: refused with its word, nothing that writes goes out', async () => {

@@ -8,6 +8,7 @@
  *   npm run endurance -- c24messages [10000] so many messages each way on a line that damages bytes; what was lost, doubled, wrong
  *   npm run endurance -- c24random [1000000] so many random inputs for everything that reads bytes of a C24 port
  *   npm run endurance -- inconrandom [1000000] the same for lines of an INCON controller
+ *   npm run endurance -- inconmessages [10000] so many acknowledged lines each way on a line that damages bytes; then with starts in between
  *   npm run endurance -- frames [10000000]   so many damaged answers of each protocol, by class; what is claimed must not be taken once
  *   npm run endurance -- coverage [lib/codec] which branches no test takes, and why; a folder below its limit is a failure
  *   npm run endurance -- mutation [lib/codec] changes the code at each place; fewer than 85 % of them noticed by the tests is a failure.
@@ -94,6 +95,23 @@ const RUNS = {
     print(`no exception, heap ${Math.round(process.memoryUsage().heapUsed / 1e6)} MB`)
   },
 
+  /** @param {string} [lines] */
+  async inconmessages(lines = '10000') {
+    const count = whole(lines, 'lines')
+    const { PATIENT, inconMessages, wrongByTheory } = require(
+      path.join(__dirname, '..', 'test', 'simulation', 'incon-messages.js')
+    )
+    const runs = { patient: PATIENT, default: {}, starts: { restarts: 60000 } }
+    for (const [name, options] of Object.entries(runs)) {
+      const { outcomes, theirs, toThem, toUs } = await inconMessages({ count, ...options })
+      print(`${name}: ${JSON.stringify({ outcomes, theirs, toThem, toUs })}`)
+      for (const { doubled, silently, wrong } of [toThem, toUs]) {
+        if (doubled || silently > wrong) throw new Error(`${name}: ${doubled} doubled, ${silently} lost silently`)
+      }
+    }
+    print(`wrong by theory: to them ${wrongByTheory('to', count, 5)}, to us ${wrongByTheory('of', count, 5)}`)
+  },
+
   /** @param {string} [inputs] */
   async inconrandom(inputs = '1000000') {
     const { inconRandom } = require(path.join(support, 'incon-random.js'))
@@ -110,7 +128,9 @@ const RUNS = {
       const rows = damaged({ protocol, frames })
       for (const { name, expected, ...row } of rows) {
         const theory = expected === 0 ? '0 claimed' : `${expected.toFixed(1)} by theory`
-        print(`${protocol}, ${name}: ${row.frames} frames, ${row.wrong} wrong, ${theory}, ${row.right} answers found all the same`)
+        print(
+          `${protocol}, ${name}: ${row.frames} frames, ${row.wrong} wrong, ${theory}, ${row.right} answers found all the same`
+        )
       }
       surprises.push(...unexplained(rows).map(({ name }) => `${protocol}, ${name}`))
     }

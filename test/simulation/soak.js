@@ -52,7 +52,7 @@ function drawRun(seed, { protocol, mode, exchanges }) {
     exchanges,
     collisions,
     polls: true,
-    phases: live ? Math.ceil(exchanges / PHASE) : 1,
+    phases: live ? Math.max(2, Math.ceil(exchanges / PHASE)) : 1,
     // who waits for a free line may be later than his fault says, and only lateness within the bound is claimed
     wire: collisions ? {} : { latenessBound: 2000 },
     echo: random.chance(0.25),
@@ -136,21 +136,23 @@ function add(total, report, { segment, phases }) {
  * @param {number} options.seed
  * @param {'nx'|'rtu'|'ascii'} options.protocol
  * @param {'safety'|'liveness'} [options.mode]
+ * @param {number} [options.size] exchanges of one segment
  * @param {number} [options.segment] only this one of them, 0 the first
  * @param {(total: any) => void} [options.tell] after each segment
  * @param {(seed: number, options: any) => any} [options.draw] what one system is made of
  * @returns {Promise<Total>}
  */
-async function soak({ exchanges, seed, protocol, mode = 'safety', segment, tell = () => {}, draw = drawRun }) {
+async function soak(options) {
+  const { exchanges, seed, protocol, mode = 'safety', segment, tell = () => {}, draw = drawRun } = options
   const seeds = createRandom(seed)
   const total = emptyTotal({ seed, protocol, mode })
-  const size = Math.min(SEGMENT, exchanges)
+  const size = Math.min(options.size ?? SEGMENT, exchanges)
   for (let n = 0; segment === undefined ? total.result.exchanges < exchanges : n <= segment; n++) {
     const own = seeds.integer(0, 2 ** 32 - 1)
     if (segment !== undefined && n !== segment) continue
-    const options = draw(own, { protocol, mode, exchanges: size })
+    const run = draw(own, { protocol, mode, exchanges: size })
     try {
-      add(total, await safetyRun(options), { segment: n, phases: options.phases })
+      add(total, await safetyRun(run), { segment: n, phases: run.phases })
     } catch (/** @type {any} */ error) {
       // nothing can happen any more, and somebody waits
       total.result.unsettled++

@@ -12,9 +12,13 @@ const MOST_STATIONS = 1000
 const FAULTS = ['late', 'jammed', 'lineDown', 'stationDemoted', 'fixedMasterId']
 /** What became of a write that somebody may ask about. */
 const DOUBTFUL = ['unknown', 'failed']
+/** Nobody acknowledges a broadcast: that is how it works. */
+const USUAL = 'BROADCAST_UNCONFIRMED'
 
+/** A record of a write that is as it should be: there is one for each write. @param {any} event */
+const isRoutine = ({ event, outcome, code }) => event === 'audit' && (!DOUBTFUL.includes(outcome) || code === USUAL)
 /** @param {any} event */
-const isFault = ({ event, outcome }) => FAULTS.includes(event) || (event === 'audit' && DOUBTFUL.includes(outcome))
+const isFault = event => FAULTS.includes(event.event) || event.event === 'audit'
 const nameOf = ({ event, outcome }) => (event === 'audit' ? `${event} ${outcome}` : event)
 
 /**
@@ -71,7 +75,7 @@ class Evidence {
   /** @param {any} event that was reported */
   event(event) {
     const name = nameOf(event)
-    const isNew = name !== 'audit confirmed' && name !== 'audit refused' && this.#isNew(event.station, name)
+    const isNew = !isRoutine(event) && this.#isNew(event.station, name)
     if (isNew && isFault(event)) this.#open(event.station, name)
     const entry = { is: 'event', event }
     if (this.#after > 0 && this.#eventsAfter > 0) {

@@ -115,6 +115,8 @@ describe('evidence: which frames', () => {
     frames(250)
     given.length = 0
     report('audit', { station: 1, outcome: 'confirmed' })
+    report('audit', { station: null, outcome: 'sent' })
+    report('audit', { station: 0, outcome: 'unknown', code: 'BROADCAST_UNCONFIRMED' })
     evidence.good(1)
     report('stationBack', { station: 1 })
     report('slow', { station: 1 })

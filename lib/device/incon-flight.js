@@ -12,8 +12,8 @@ class Flight {
   bytes = 0
   /** that it was given to the line once */
   begun = false
-  /** that we have heard it ourselves */
-  wasHeard = false
+  /** how often we have heard it ourselves */
+  heard = 0
   /** @type {null | (() => void)} */
   #wake = null
 
@@ -39,7 +39,7 @@ class Flight {
   /** Whether this message is the line itself. */
   isHeard({ kind, number, bytes }) {
     const same = this.begun && !this.end && kind !== 'ack' && number === this.number && bytes.equals(this.text)
-    this.wasHeard ||= same
+    if (same) this.heard++
     return same
   }
 

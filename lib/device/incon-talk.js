@@ -45,7 +45,7 @@ class InconTalk {
   #waiting = 0
   /** @type {Flight|null} the line of ours that is not acknowledged yet */
   #flight = null
-  #heard = { message: /** @type {any} */ (null), verdict: /** @type {any} */ (null), taken: false }
+  #heard = { message: /** @type {any} */ (null), verdict: /** @type {any} */ (null) }
   /** @type {Set<number>} acknowledgements that wait */
   #acks = new Set()
   #own = 0
@@ -69,18 +69,15 @@ class InconTalk {
    * @returns {{ lost: number } | null} null: it is not given to the flow
    */
   hear(message, port) {
-    if (this.#heard.message !== message) {
-      this.#heard = { message, verdict: this.#understand(message, port), taken: false }
-    }
-    const { verdict, taken } = this.#heard
-    if (verdict?.verdict === 'repeated') this.#again(message, port)
+    if (this.#heard.message !== message) this.#heard = { message, verdict: this.#understand(message, port) }
+    const { verdict } = this.#heard
+    const isRepeated = verdict?.verdict === 'repeated'
+    if (isRepeated) port.counts.repeated++
     // what nobody takes is not acknowledged: it comes again
-    if (verdict?.verdict !== 'new' || !port.listened()) return null
-    if (!taken) {
-      this.#heard.taken = true
-      accept(this.#reception, { number: message.number, text: message.bytes })
-      this.#acknowledge(message.number, port)
-    }
+    const isTaken = verdict?.verdict === 'new' && port.listened()
+    if (isTaken) accept(this.#reception, { number: message.number, text: message.bytes })
+    if (isTaken || isRepeated) this.#acknowledge(message.number, port)
+    if (!isTaken) return null
     return { lost: verdict.lost }
   }
 
@@ -95,12 +92,6 @@ class InconTalk {
     // it may have been taken before our start
     this.greet(port)
     return null
-  }
-
-  #again({ number }, port) {
-    port.counts.repeated++
-    if (!this.#heard.taken) this.#acknowledge(number, port)
-    this.#heard.taken = true
   }
 
   #isOwn(message) {
@@ -137,7 +128,7 @@ class InconTalk {
     if (port) this.#acknowledge(START, port)
   }
 
-  /** @param {number} number @param {Port} port */
+  /** Once, however many links have heard the line. @param {number} number @param {Port} port */
   async #acknowledge(number, port) {
     if (this.#acks.has(number)) return
     this.#acks.add(number)
@@ -252,7 +243,8 @@ class InconTalk {
     }
     this.#flight = null
     port.leaving.delete(leave)
-    if (!flight.wasHeard) this.#own = 0
+    // an adapter hears each of them
+    if (flight.heard < flight.frames) this.#own = 0
     return flight.end ?? { kind: 'silent' }
   }
 

@@ -192,12 +192,24 @@ describe('INCON link, acknowledged lines', () => {
   })
 
   it('both start: its own start goes out before it acknowledges the other one', async () => {
-    open({ link: { before: 30 } })
+    open({ link: { attempts: 1, ackTimeout: 100 } })
+    await bench.clock.advance(1000)
+    bench.heard.length = 0
     bench.say(line(0, ''))
-    await bench.clock.advance(400)
-    const [start, answer] = bench.texts()
-    assert.ok(isStart(start), start)
-    assert.strictEqual(answer, ack(0))
+    await bench.clock.advance(90)
+    const [start, answer, ...more] = bench.texts()
+    assert.deepStrictEqual([isStart(start), answer, more], [true, ack(0), []])
+  })
+
+  it('acknowledgements go before lines that wait', async () => {
+    await begun({ link: { scan: 50 } })
+    assert.strictEqual(short(await bench.run(bench.device.send('A'))), 'confirmed 1')
+    bench.say(line(1, 'X'))
+    await bench.clock.advance(15)
+    const sent = bench.device.send('B')
+    bench.say(line(2, 'Y'))
+    assert.strictEqual(short(await bench.run(sent)), 'confirmed 1')
+    assert.deepStrictEqual(bench.texts(), [line(1, 'A'), ack(1), ack(2), line(2, 'B')])
   })
 
   it('links on one line: one number after the other, one acknowledgement, each is told', async () => {
@@ -263,15 +275,17 @@ describe('INCON link, acknowledged lines', () => {
     deaf.close()
   })
 
-  it('an adapter that hears itself: nothing is sent but starts, and the code says what to set', async () => {
-    open({ wire: { echo: true } })
-    bench.peer.answers = obedient
-    const outcome = await bench.run(bench.device.send('A'))
-    assert.strictEqual(short(outcome), 'failed OWN_ECHO 0')
-    await bench.clock.advance(5000)
-    assert.ok(bench.texts().every(isStart), bench.texts().join())
-    assert.deepStrictEqual(bench.values(), [])
-  })
+  for (const after of [5, 45, 52, 60])
+    it(`an adapter that hears itself: nothing is sent but starts, and the code says what to set (answers after ${after} ms)`, async () => {
+      open({ wire: { echo: true } })
+      bench.peer.answers = obedient
+      bench.peer.after = after
+      const outcome = await bench.run(bench.device.send('A'))
+      assert.strictEqual(short(outcome), 'failed OWN_ECHO 0')
+      await bench.clock.advance(5000)
+      assert.ok(bench.texts().every(isStart), bench.texts().join())
+      assert.deepStrictEqual(bench.values(), [])
+    })
 
   it('where the line takes the echo out it works as without', async () => {
     await begun({ wire: { echo: true }, line: { echo: 'on' } })
@@ -289,6 +303,20 @@ describe('INCON link, acknowledged lines', () => {
     await bench.clock.advance(100)
     assert.deepStrictEqual(bench.values(), [])
     assert.strictEqual(short(await bench.run(sent)), 'unknown OWN_ECHO 2')
+  })
+
+  it('both happen to say the same: repeated, and no echo', async () => {
+    await begun({ link: { ackTimeout: 300 } })
+    for (const number of [1, 2, 3]) {
+      bench.peer.answers = () => line(number, 'PING')
+      const sent = bench.device.send('PING')
+      await bench.clock.advance(100)
+      bench.peer.answers = text => (text[0] === '#' ? ack(number) : null)
+      assert.strictEqual(short(await bench.run(sent)), 'confirmed 2')
+      bench.say(line(number, 'PING'))
+      await bench.clock.advance(200)
+      assert.strictEqual(bench.got.length, number)
+    }
   })
 
   it('unplugged while it waits: repeated when the port is back, and confirmed', async () => {

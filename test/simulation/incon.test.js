@@ -3,6 +3,7 @@
 const assert = require('node:assert')
 const { createRandom } = require('../../lib/sim')
 const { inconBench } = require('../device/incon-bench')
+const { PATIENT, inconMessages } = require('./incon-messages')
 
 /**
  * 10,000 lines each way on a line on which one byte of a hundred is damaged or lost. Each line says which one it is, so that a text that nobody
@@ -148,5 +149,48 @@ describe('INCON: 10,000 lines each way with 1 % of the bytes damaged or lost', f
     // what did not come is counted, without exception
     assert.deepStrictEqual([whole.length + stats.lost, valid.length + counts.missing], [LINES, LINES])
     assert.ok(stats.damaged > 1900 && got.every(({ complete, value }) => complete === (value !== null)))
+  })
+})
+
+describe('INCON: acknowledged lines while one byte of a hundred is damaged or lost, and both send when they like', function () {
+  this.timeout(30000)
+
+  // endurance run "inconmessages": 10,000 each way
+  it('0 lost, 0 doubled, none out of order', async () => {
+    const count = 500
+    const { outcomes, theirs, toThem, toUs, stats, counts, pending } = await inconMessages({
+      count,
+      seed: 1,
+      ...PATIENT
+    })
+    assert.deepStrictEqual([outcomes, theirs, pending], [{ confirmed: count }, { confirmed: count }, 0])
+    // of 500 lines 0.05 come wrong by theory; with this seed none does
+    const all = { came: count, lost: 0, silently: 0, doubled: 0, wrong: 0, disorder: 0 }
+    assert.deepStrictEqual([toThem, toUs], [all, all])
+    // the line was as bad as it should be: repetitions because a line, and because an acknowledgement was hit
+    for (const each of [stats, counts])
+      assert.ok(each.repeats > count / 5 && each.repeated > count / 25, JSON.stringify(each))
+  })
+
+  it('with the default of attempts: what is given up is told, and nothing is doubled', async () => {
+    const { outcomes, theirs, toThem, toUs } = await inconMessages({
+      ...{ count: 200, seed: 2, wear: { damaged: 0.015, lost: 0.015 } }
+    })
+    assert.ok(outcomes.unknown > 3 && theirs.unknown > 3, JSON.stringify([outcomes, theirs]))
+    for (const { doubled, silently, wrong } of [toThem, toUs])
+      assert.deepStrictEqual([doubled, silently <= wrong, wrong <= 2], [0, true, true])
+  })
+
+  it('switched off and on, either of them, every few seconds: nothing is doubled or lost silently', async () => {
+    for (const seed of [1, 2]) {
+      const { outcomes, theirs, toThem, toUs, pending } = await inconMessages({ count: 80, seed, restarts: 4000 })
+      assert.ok(
+        outcomes.unknown > 2 && outcomes.confirmed > 50 && theirs.confirmed > 30,
+        JSON.stringify([outcomes, theirs])
+      )
+      for (const { doubled, silently, wrong } of [toThem, toUs])
+        assert.deepStrictEqual([doubled, silently, wrong], [0, 0, 0], `seed ${seed}`)
+      assert.strictEqual(pending, 0)
+    }
   })
 })

@@ -55,7 +55,7 @@ function show({ stations, press, machine, broker, runtime }) {
   print(
     `  MQTT        ${broker.url}   values: plant/#   set: plant/furnace/set/setpoint, plant/zone1/set/manual_output,`
   )
-  print(`              plant/press/set/recipe, plant/machine/set/program`)
+  print(`              plant/press/set/recipe, plant/machine/set/program   what happens on the line: line/#`)
   print(`  Line        ${stations.address}   simulated: NX PLCs 1 and 2, regulators 11 and 12, 38400 bit/s`)
   print(`  Press       ${press.address}   simulated: MELSEC-Q serial module (C24), 19200 bit/s`)
   print(`  Machine     ${machine.address}   simulated: INCON controller, 9600 bit/s`)

@@ -204,6 +204,26 @@ describe('plc-monitor', () => {
     })
   })
 
+  it('a folder that cannot be made stops nothing: counted, the error stands in the statistics', async () => {
+    const file = path.join(os.tmpdir(), `monitor-file-${process.pid}`)
+    fs.writeFileSync(file, '')
+    helper.settings({ userDir: file })
+    try {
+      const { out, statistics } = await loadWatched([...polling(), monitor()])
+      await until(() => out.length > 0, 'a value')
+      wire.drop()
+      const before = out.length
+      await until(() => out.length > before + 2, 'values after the fault')
+      ask({ payload: 'evidence' })
+      await until(() => statistics.length > 0, 'the answer')
+      const { rows, lost, error } = statistics[0].payload
+      assert.deepEqual([rows, lost > 0, error.code], [[], true, 'ENOTDIR'])
+    } finally {
+      helper.settings({ userDir: undefined })
+      fs.rmSync(file)
+    }
+  })
+
   it('without a user directory no evidence is kept', async () => {
     const { statistics } = await loadWatched([lineNode(wire), monitor()])
     ask({ payload: 'evidence' })

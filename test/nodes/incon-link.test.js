@@ -103,6 +103,26 @@ describe('incon-link', () => {
     assert.deepEqual([typeof first.number, first.lost], ['number', 0])
   })
 
+  it('acknowledged lines: confirmed, and each line of the controller comes once', async () => {
+    const { out, written } = await load([line(), sender({ checked: true, acknowledge: true })])
+    await opened()
+    helper.getNode('link').receive({ payload: 'O1234' })
+    const { write } = await until(() => written[0], 'the outcome')
+    assert.deepEqual({ ...write, ms: 0 }, { outcome: 'confirmed', attempts: 1, ms: 0, bytes: 14 })
+    assert.deepEqual(
+      controller().messages.map(({ text }) => text),
+      ['O1234']
+    )
+    const answer = await until(() => out.find(({ payload }) => payload === 'PROGRAM O1234 SELECTED'), 'the answer')
+    assert.deepEqual([answer.number, answer.lost, answer.complete], [1, 0, true])
+  })
+
+  it('acknowledged lines need checked ones: a fault of the configuration', async () => {
+    const { caught } = await load([line(), sender({ acknowledge: true })])
+    await until(() => caught.length > 0, 'the error')
+    assert.equal(caught[0].error.code, 'BAD_SETTING')
+  })
+
   for (const [what, config, msg, code] of [
     ['a node that only receives', {}, { payload: 'X' }, 'SENDING_OFF'],
     ['a retained message', { access: 'write' }, { payload: 'X', retain: true }, 'RETAINED_REFUSED'],

@@ -119,7 +119,6 @@ class SerialTransport {
   }
 
   #ready() {
-    if (this.#state !== 'opening') return
     this.#state = 'open'
     this.#port.on('data', bytes => {
       if (this.#state === 'open') this.#intake.take(bytes)

@@ -21,6 +21,13 @@ const whole = (text, what) => {
   return number
 }
 
+/** MB in use, after a collection. */
+const heap = () => {
+  require('node:v8').setFlagsFromString('--expose-gc')
+  require('node:vm').runInNewContext('gc')()
+  return Math.round(process.memoryUsage().heapUsed / 1e6)
+}
+
 const HOSTILE_RUNS = {
   /** @param {string} [count] @param {string} [name] */
   async garbage(count = '10', name = '') {
@@ -39,6 +46,24 @@ const HOSTILE_RUNS = {
     }
     if (failed.length) throw new Error(`too slow or too large:\n${failed.join('\n')}`)
     print(`lag p99 below ${MOST_LAG} ms and memory below +${MOST_GROWN} MB in each`)
+  },
+
+  /** @param {string} [count] @param {string} [seed] */
+  async random(count = '1000000', seed = '1') {
+    const options = { inputs: whole(count, 'inputs'), seed: whole(seed, 'seeds') }
+    const runs = {
+      protocols: () => require(path.join(support, 'protocol-random.js')).protocolRandom(options),
+      texts: () => require(path.join(support, 'text-random.js')).textRandom(options),
+      c24: () => require(path.join(support, 'melsec-random.js')).melsecRandom(options),
+      incon: () => require(path.join(support, 'incon-random.js')).inconRandom(options)
+    }
+    for (const [name, run] of Object.entries(runs)) {
+      const start = performance.now()
+      const done = run()
+      const seconds = Math.round((performance.now() - start) / 1000)
+      print(`${name}: ${JSON.stringify(done)}; ${seconds} s, heap ${heap()} MB`)
+    }
+    print('no exception, no hang, and nothing was taken that is not sound')
   }
 }
 

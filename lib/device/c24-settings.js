@@ -5,7 +5,7 @@ const { bidirectionalFraming } = require('../codec/melsec/bidirectional')
 const { ENCODINGS, FORMATS } = require('../codec/melsec/convert')
 const { FRAMINGS, bidirectionalFormat, messageFormat } = require('../codec/melsec/format')
 const { messageFraming } = require('../codec/melsec/message')
-const { blank, choice, isOn, wholeNumber } = require('./options')
+const { blank, choice, isOn, textOf, wholeNumber } = require('./options')
 
 /** The configuration of a C24 port, read and checked before anything is sent. Times in ms. */
 
@@ -15,7 +15,7 @@ const HOUR = 3600000
 const hexBytes = (setting, value, fallback) => {
   if (value instanceof Uint8Array) return Buffer.from(value)
   if (value === undefined || value === null) return fallback
-  const text = String(value).replace(/[\s,]+/g, '')
+  const text = textOf(setting, value).replace(/[\s,]+/g, '')
   if (/^([\da-f]{2})*$/i.test(text)) return Buffer.from(text, 'hex')
   throw new PlcError('BAD_SETTING', { setting, value, reason: 'bytes in hexadecimal are needed, as 0D 0A' })
 }
@@ -108,7 +108,7 @@ const readSettings = (given, line) => {
   const { format, framing } = readFormat(given, { bidirectional, dc, character })
   const quiet = number(given, 'quiet', { fallback: 0 })
   return {
-    name: blank(given.name) ? 'C24' : String(given.name).trim(),
+    name: blank(given.name) ? 'C24' : textOf('name', given.name),
     bidirectional,
     character,
     format,

@@ -1,7 +1,7 @@
 'use strict'
 const { BUFFER } = require('../codec/incon/message')
 const { PlcError } = require('../error')
-const { blank, choice, isOn, wholeNumber } = require('./options')
+const { blank, choice, isOn, textOf, wholeNumber } = require('./options')
 
 const ENCODINGS = ['ascii', 'latin1', 'utf8']
 
@@ -17,7 +17,7 @@ const readSettings = given => {
   const quiet = wholeNumber('quiet', given.quiet, { fallback: 50, least: 0, most: 60000 })
   const scan = wholeNumber('scan', given.scan, { fallback: 100, least: 0, most: 10000 })
   const settings = {
-    name: blank(given.name) ? 'INCON' : String(given.name).trim(),
+    name: blank(given.name) ? 'INCON' : textOf('name', given.name),
     encoding: choice('encoding', given.encoding, ENCODINGS),
     checked: isOn(given.checked),
     acknowledge: isOn(given.acknowledge),

@@ -15,6 +15,15 @@ const { PlcError } = require('../error')
 
 const blank = value => value === undefined || value === null || (typeof value === 'string' && value.trim() === '')
 
+/**
+ * A setting as trimmed text: a flow that was edited by hand may hold anything.
+ * @param {string} setting @param {unknown} value @returns {string} @throws {PlcError} BAD_SETTING
+ */
+const textOf = (setting, value) => {
+  if (!['object', 'function', 'symbol'].includes(typeof value)) return String(value).trim()
+  throw new PlcError('BAD_SETTING', { setting, value, reason: 'text is needed' })
+}
+
 const wholeNumber = (setting, value, { fallback, least, most }) => {
   if (blank(value)) return fallback
   const number = typeof value === 'string' ? Number(value) : value
@@ -24,19 +33,19 @@ const wholeNumber = (setting, value, { fallback, least, most }) => {
 
 const choice = (setting, value, known) => {
   if (blank(value)) return known[0]
-  const found = known.find(each => String(each) === String(value).trim())
+  const found = known.find(each => String(each) === textOf(setting, value))
   if (found !== undefined) return found
   throw new PlcError('BAD_SETTING', { setting, value, reason: `known are ${known.join(', ')}` })
 }
 
 /** @param {unknown} value @param {number} station @returns {string} */
-const nameOf = (value, station) => (blank(value) ? `station ${station}` : String(value).trim())
+const nameOf = (value, station) => (blank(value) ? `station ${station}` : textOf('name', value))
 
 /** Spans of absolute bits that a message may write to. */
 const readRanges = (value, notation) => {
-  const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(',')
+  const given = Array.isArray(value) ? value : blank(value) ? [] : textOf('writableRanges', value).split(',')
   return given
-    .map(text => String(text).trim())
+    .map(text => textOf('writableRanges', text))
     .filter(text => text !== '')
     .map(text => {
       const { kind, address, count } = notation.parse(text)
@@ -64,4 +73,4 @@ const readHealth = given => {
   throw new PlcError('BAD_SETTING', { setting: 'probeMost', value: probeMost, reason })
 }
 
-module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber }
+module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, textOf, wholeNumber }

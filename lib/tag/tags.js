@@ -34,6 +34,9 @@ const MOST_TAGS = 10000
 
 const bad = (name, reason) => new PlcError('BAD_TAG', { name, reason })
 
+/** What has one text; an object may have none, or throw. */
+const isPlain = value => value === null || !['object', 'function', 'symbol'].includes(typeof value)
+
 /** An own property as trimmed text; '' if there is none. */
 const textOf = (row, field) => {
   const value = Object.hasOwn(row, field) ? row[field] : undefined
@@ -67,6 +70,8 @@ const orderOf = (row, field, name) => {
 /** Fields of a row with their types and defaults; nothing is looked up yet. */
 const readRow = (row, place) => {
   if (!row || typeof row !== 'object' || Array.isArray(row)) throw bad(place, 'it is not a row of fields')
+  const strange = FIELDS.find(field => Object.hasOwn(row, field) && !isPlain(row[field]))
+  if (strange) throw bad(place, `${strange} is neither text nor a number`)
   const name = textOf(row, 'name')
   if (!NAME.test(name)) throw bad(name || place, 'a name is made of letters, digits and _, and starts with no digit')
   if (RESERVED.has(name)) throw bad(name, 'this name is reserved')

@@ -155,7 +155,7 @@ const TYPE_NAMES = Object.freeze([...TYPES.keys(), 'string[n]'])
  * @throws {PlcError} BAD_TYPE
  */
 const parseType = text => {
-  const name = String(text).trim().toLowerCase()
+  const name = typeof text === 'string' ? text.trim().toLowerCase() : ''
   const known = TYPES.get(name)
   if (known) return known
   const string = /^string\s*\[\s*(\d+)\s*\]$/.exec(name)
@@ -164,7 +164,7 @@ const parseType = text => {
   const reason = name.startsWith('string')
     ? `write string[n] with n = 1 to ${MOST_STRING} bytes`
     : 'there is no such type'
-  throw new PlcError('BAD_TYPE', { type: String(text), reason, known: TYPE_NAMES.join(', ') })
+  throw new PlcError('BAD_TYPE', { type: text, reason, known: TYPE_NAMES.join(', ') })
 }
 
 module.exports = { parseType, round }

@@ -42,7 +42,8 @@ function expand(text) {
   return Array.from({ length: last - first + 1 }, (_, i) => first + i)
 }
 
-const bad = (id, reason) => new PlcError('BAD_MASTER_ID', { id: String(id), reason })
+// an object may have no text
+const bad = (id, reason) => new PlcError('BAD_MASTER_ID', { id: typeof id === 'object' ? id : String(id), reason })
 
 /**
  * Hands the IDs out in turn, one to a query. One whose exchange failed rests until {@link free}: call that when no answer can come any more

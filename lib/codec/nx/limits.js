@@ -30,7 +30,7 @@ const LAST = 0xffff
  */
 function limitsOf(settings = {}) {
   const limits = { ...LIMITS }
-  for (const [name, given] of Object.entries(settings)) {
+  for (const [name, given] of Object.entries(settings ?? {})) {
     if (given === undefined) continue
     if (!Object.hasOwn(LIMITS, name)) {
       throw new PlcError('BAD_SETTING', { setting: `limits.${name}`, value: given, reason: 'there is no such limit' })

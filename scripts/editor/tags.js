@@ -45,6 +45,9 @@ const orders = (saved, { type }) => {
   return saved === 'low' ? known : [['', t('editor.lowFirst')], known[1]]
 }
 
+/** A cell for a few digits; many stand in a row. */
+const narrow = field => field.css({ width: '54px', padding: '4px' })
+
 const tagFields = (data, device) => {
   const writable = tick('writable', data.writable)
   const hint = t(device.type === 'chino-config' ? 'editor.modbusAddress' : 'tooltip.address')
@@ -54,13 +57,16 @@ const tagFields = (data, device) => {
     type: typeField(data.type),
     label: cell('tagLabel', data.label, { grow: true, width: '20%' }),
     unit: cell('unit', data.unit, { width: '64px' }),
-    scale: cell('scale', data.scale, { width: '58px', shows: '1' }),
-    offset: cell('offset', data.offset, { width: '58px', shows: '0' }),
-    deadband: cell('deadband', data.deadband, { width: '52px', shows: '0' }),
-    wordOrder: pick('wordOrder', data.wordOrder, orders(data.wordOrder, device)),
-    min: cell('min', data.min, { width: '52px', shows: '–' }),
-    max: cell('max', data.max, { width: '52px', shows: '–' }),
-    maxStep: cell('maxStep', data.maxStep, { width: '52px', shows: '–' }),
+    scale: narrow(cell('scale', data.scale, { shows: '1' })),
+    offset: narrow(cell('offset', data.offset, { shows: '0' })),
+    deadband: narrow(cell('deadband', data.deadband, { shows: '0' })),
+    wordOrder: pick('wordOrder', data.wordOrder, orders(data.wordOrder, device)).css({
+      flex: '0 1 108px',
+      minWidth: 0
+    }),
+    min: narrow(cell('min', data.min, { shows: '–' })),
+    max: narrow(cell('max', data.max, { shows: '–' })),
+    maxStep: narrow(cell('maxStep', data.maxStep, { shows: '–' })),
     writable
   }
 }

@@ -75,8 +75,12 @@ function undetected(digits, most, changesOf) {
 }
 
 /** `count` bits of an ASCII frame: the digits of its header are compared, `:` CR LF as well. */
-const bitsOfAscii = ({ header, length }, count) =>
-  undetected(length - 3 - header, count, flips) / choose(8 * length, count)
+function bitsOfAscii({ header, length }, count) {
+  const key = `${header} ${length} ${count}`
+  if (!known.has(key)) known.set(key, undetected(length - 2 - header, count, flips) / choose(8 * length, count))
+  return known.get(key)
+}
+const known = new Map()
 
 /** Two digits behind the header replaced by others. */
 const ONE_OTHER = Array.from({ length: 31 }, (_, n) => n - 15)

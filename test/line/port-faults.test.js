@@ -257,4 +257,95 @@ describe('listening line: faults of a port', () => {
     await bench.clock.advance(1000)
     assert.equal(bench.ports.length, 2)
   })
+
+  it('one that does not say that it has taken a message: WRITE_STALLED after the time for writing', async () => {
+    const bench = await opened((data, done, port) => void (isFirst(port, bench.ports) || done()))
+    const start = bench.clock.now()
+    const error = await bench.run(failure(bench.lease.send(bytes('abc;'))))
+    assert.deepEqual([error.code, error.details.sent], ['WRITE_STALLED', 3])
+    const took = bench.clock.now() - start
+    assert.ok(Math.abs(took - 4 * CHARACTER - 1000) < 1, `${took}`)
+  })
+
+  it('one that refuses what ends a torn message: the next one is not sent behind it', async () => {
+    const refused = []
+    const bench = scripted((data, done) => {
+      if (`${data}` !== '\x18') return done()
+      refused.push(`${data}`)
+      done(eio())
+    })
+    await bench.clock.advance(1)
+    collect(bench.lease, { torn: { wait: 0, first: bytes('\x18'), apart: true } })
+    const torn = failure(bench.lease.send(bytes('x'.repeat(50))))
+    await bench.clock.advance(5)
+    bench.ports[0].handlers.closed(null)
+    await torn
+    const next = failure(bench.lease.send(bytes('next;')))
+    const failed = await Promise.race([bench.run(next), bench.clock.advance(3000).then(() => null)])
+    assert.ok(failed === null || failed.code)
+    assert.ok(bench.ports.every(port => !port.sent.includes('next;') || port.sent[0] === '\x18'))
+  })
+})
+
+describe('listening line: nobody listens', () => {
+  it('a line that only sends: what comes is stray', async () => {
+    const bench = createBench()
+    await bench.run(bench.lease.send(bytes('abc;')))
+    bench.wire.handlers.data(bytes('what?'))
+    await bench.run(bench.lease.send(bytes('def;'), { quiet: 5 }))
+    assert.equal(bench.lease.line.stats().strayBytes, 5)
+  })
+
+  it('a listener that closes another, one that throws no error, an answer without bytes', async () => {
+    const bench = createBench()
+    await bench.clock.advance(1)
+    const closes = collect(bench.lease, {
+      reply: () => {
+        second.close()
+        throw 'no error' // eslint-disable-line no-throw-literal
+      }
+    })
+    const second = collect(bench.lease)
+    const third = collect(bench.lease, { reply: () => Buffer.alloc(0) })
+    bench.wire.handlers.data(bytes('a;'))
+    assert.deepEqual([closes.texts, second.texts, third.texts], [['a'], [], ['a']])
+    assert.deepEqual(bench.wire.sent, [])
+    second.close()
+    bench.wire.handlers.data(bytes('b;'))
+    assert.deepEqual(
+      [closes.texts, third.texts],
+      [
+        ['a', 'b'],
+        ['a', 'b']
+      ]
+    )
+  })
+
+  it('bytes that wait to be looked at keep the wire busy: nothing is sent into them', async () => {
+    const bench = scripted((data, done) => done())
+    await bench.clock.advance(1)
+    collect(bench.lease)
+    const [port] = bench.ports
+    port.waiting = true
+    const sent = bench.lease.send(bytes('abc;'), { quiet: 20 })
+    await bench.clock.advance(100)
+    assert.deepEqual(port.sent, [])
+    port.waiting = false
+    await bench.run(sent)
+    assert.deepEqual(port.sent, ['abc;'])
+  })
+})
+
+describe('line: one who is told may act at once', () => {
+  it('who releases the line inside an event harms nobody', async () => {
+    for (const event of ['frame', 'event']) {
+      const bench = createBench({ onQuery: (data, wire) => wire.reply(toy.answer(data[1], [3], data[2])) })
+      let released = null
+      bench.lease.line.on(event, () => (released ??= bench.lease.release()))
+      bench.lease.line.on('state', () => {})
+      const [result] = await bench.run(Promise.allSettled([ask(bench)]))
+      assert.ok(result.status === 'fulfilled' || result.reason.code === 'LINE_CLOSED', event)
+      await bench.run(released ?? bench.lease.release())
+    }
+  })
 })

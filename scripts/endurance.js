@@ -36,13 +36,15 @@ const RUNS = {
   /** @param {string} [count] */
   async redeploys(count = '1000') {
     const rounds = whole(count, 'redeploys')
-    const { before, after, ...done } = await require(path.join(support, 'redeploys.js')).redeploys({
-      rounds,
-      tell: print
-    })
+    const { redeploys } = require(path.join(support, 'redeploys.js'))
+    const { before, after, ...done } = await redeploys({ rounds, tell: print })
     print(JSON.stringify(done))
     print(`before: ${JSON.stringify(before.resources)}, ${before.descriptors.length} descriptors`)
     print(`after:  ${JSON.stringify(after.resources)}, ${after.descriptors.length} descriptors`)
+    // slow lines: each deploy falls into an exchange, and no connection is dropped that could tear a frame
+    const calm = { rounds: Math.min(rounds, 200), calm: true, baudRate: 9600 }
+    const { slowest, torn, queries } = await redeploys(calm)
+    print(`${calm.rounds} in the middle of exchanges: ${JSON.stringify({ slowest, torn, queries })}`)
     print('nothing was left behind')
   },
 

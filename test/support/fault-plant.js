@@ -10,6 +10,7 @@ const os = require('node:os')
 const path = require('node:path')
 const { createLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
 const { LISTENERS, listeningFlow, startListening } = require('./listening-redeploys.js')
+const { placed } = require('./node-red.js')
 const { createTcpProxy } = require('./tcp-proxy.js')
 const { startVersions } = require('./versions.js')
 
@@ -117,14 +118,14 @@ function flowOf(settings, { turn = 0, interval = 250, writing = 1000 } = {}) {
     wires: [['debug-events'], [], []]
   }))
   const tab = { id: 'tab', type: 'tab', label: 'plant' }
-  return [
+  return placed([
     tab,
     ...lines,
     ...monitors,
     debugOf('events'),
     ...NAMES.flatMap(name => deviceFlow(name, { turn, interval, writing })),
     ...listening
-  ]
+  ])
 }
 
 /**

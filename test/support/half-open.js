@@ -51,8 +51,8 @@ async function halfOpen({ rounds, timeout = 1000, attempts = 3, ways = Object.ke
   })
   const good = from => until(() => seen.last > from, { what: 'a value', every: 2, patience: 120000 })
   const once = async ({ ms, cut, mend }) => {
-    const { accepted } = proxy.counts
     await good(performance.now())
+    const { accepted } = proxy.counts
     const start = performance.now()
     await cut({ proxy })
     const again = until(() => proxy.counts.accepted > accepted, { what: 'a connection', every: 2, patience: 60000 })

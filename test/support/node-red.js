@@ -56,6 +56,9 @@ function makeUserDir({ settings = {}, modules = {}, product = packageFolder() } 
   return userDir
 }
 
+/** A node without a place would count as a configuration node: gives one to all that lie on a tab. */
+const placed = flow => flow.map(node => (node.z ? { x: 100, y: 100, ...node } : node))
+
 async function until(check, { what, patience = 20000, every = 20 }) {
   const end = Date.now() + patience
   for (;;) {
@@ -216,4 +219,4 @@ function watching(comms) {
  * @property {(id: string, is?: (value: any) => boolean, patience?: number) => Promise<any>} next
  */
 
-module.exports = { startNodeRed, makeUserDir, until, redFolder, nodeBinary, packageFolder }
+module.exports = { startNodeRed, makeUserDir, placed, until, redFolder, nodeBinary, packageFolder }

@@ -11,7 +11,7 @@ const os = require('node:os')
 const path = require('node:path')
 const { createNxLine, serveOnPty, serveOnTcp } = require('../../lib/sim')
 const { LISTENERS, listeningFlow, startListening } = require('./listening-redeploys.js')
-const { startNodeRed, until } = require('./node-red.js')
+const { placed, startNodeRed, until } = require('./node-red.js')
 
 const LINES = ['serial', 'tcp', 'simulated']
 const DEPLOY_MS = 2000
@@ -66,7 +66,7 @@ function flowOf(settings, { turn = 0, without = '' } = {}) {
     }
   ])
   const all = [tab, ...each, ...listeningFlow(settings, { turn })]
-  return all.map(node => (node.id === without ? { ...node, d: true } : node))
+  return placed(all).map(node => (node.id === without ? { ...node, d: true } : node))
 }
 
 /** What one round does; the turn decides. */
@@ -79,9 +79,10 @@ const KINDS = [
   { type: 'reload', change: turn => ({ turn }) }
 ]
 
-async function startLines() {
+async function startLines({ baudRate }) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'endurance-'))
-  const wires = [1, 2].map(() => createNxLine({ stations: [1], baudRate: 115200, quiet: true }).wire)
+  const made = [1, 2].map(() => createNxLine({ stations: [1], baudRate, quiet: true }))
+  const wires = made.map(({ wire }) => wire)
   const connections = { tcp: 0 }
   const { connect } = wires[1]
   wires[1].connect = handlers => {
@@ -91,12 +92,15 @@ async function startLines() {
   const pty = serveOnPty({ wire: wires[0], link: path.join(folder, 'line') })
   const tcp = await serveOnTcp({ wire: wires[1] })
   const listening = await startListening(folder)
-  const common = { baudRate: 115200, latenessBound: 20 }
+  const common = { baudRate, latenessBound: 20 }
   return {
     pty,
     tcp,
     listening,
     connections,
+    queries: () => made.reduce((sum, { plcs: [{ counts }] }) => sum + counts.queries, 0),
+    /** Bytes that the PLCs heard and could not make a frame of. */
+    torn: () => made.reduce((sum, { plcs: [{ counts }] }) => sum + counts.strayBytes + counts.badCrc, 0),
     settings: {
       ...listening.settings,
       serial: { ...common, transport: 'serial', path: pty.path() },
@@ -130,13 +134,14 @@ async function allFlow(red) {
 }
 
 /**
- * @param {{ rounds: number, red?: string, node?: string, product?: string, tell?: (text: string) => void }} options
- * @returns {Promise<{ rounds: number, drops: number, unplugs: number, connections: number, slowest: number, ms: number, heard: object,
- *   before: object, after: object }>} heard: messages that the devices of the listening lines got
+ * @param {{ rounds: number, calm?: boolean, baudRate?: number, red?: string, node?: string, product?: string, tell?: (text: string) => void }} options
+ *   calm: no connection is dropped and nothing is unplugged, so no station may hear a torn frame and no port may be in use
+ * @returns {Promise<{ rounds: number, drops: number, unplugs: number, connections: number, slowest: number, ms: number, heard: object, queries: number,
+ *   torn: number, before: object, after: object }>} heard: messages that the devices of the listening lines got; queries: of the PLCs; torn: bytes that the PLCs heard and that were no frame
  * @throws {import('node:assert').AssertionError} if something is left behind, does not come back or takes longer than 2 s
  */
-async function redeploys({ rounds, tell = _text => {}, ...which }) {
-  const lines = await startLines()
+async function redeploys({ rounds, calm = false, baudRate = 115200, tell = _text => {}, ...which }) {
+  const lines = await startLines({ baudRate })
   const red = await startNodeRed({ ...which, probe: true, flow: [] }).catch(async error => {
     await lines.close()
     throw error
@@ -146,7 +151,7 @@ async function redeploys({ rounds, tell = _text => {}, ...which }) {
     await allFlow(red)
     await red.deploy([])
     const before = await until(() => red.count(), { what: 'a count' })
-    const done = await rounded({ red, lines, rounds, tell })
+    const done = await rounded({ red, lines, rounds, calm, tell })
     await allFlow(red)
     await red.deploy([])
     const connected = () => lines.tcp.connections() + lines.listening.tcp.connections()
@@ -163,11 +168,19 @@ async function redeploys({ rounds, tell = _text => {}, ...which }) {
     assert.equal(await red.stop(), 'ended', 'Node-RED ends by itself when it is asked to')
     const heard = lines.listening.check()
     assert.ok(Math.min(...Object.values(heard)) > rounds / 10, `the devices got only ${JSON.stringify(heard)}`)
-    return { ...done, heard, before, after }
+    const torn = lines.torn()
+    if (calm) assertCalm(red, torn)
+    return { ...done, heard, queries: lines.queries(), torn, before, after }
   } finally {
     if (red.child.exitCode === null) await red.stop()
     await lines.close()
   }
+}
+
+/** Nothing but deploys has happened: each frame was whole, and each port was free when it was opened again. */
+function assertCalm(red, torn) {
+  assert.equal(torn, 0, `the PLCs heard ${torn} bytes that were no frame`)
+  assert.doesNotMatch(red.log(), /in use|locked|PORT_|CONNECT_FAILED|LINE_DOWN/)
 }
 
 /** The runtime answers before the new nodes are made: the log tells when they are. */
@@ -190,15 +203,17 @@ const drop = ({ tcp, listening }, done) => {
   listening.tcp.drop()
 }
 
-async function rounded({ red, lines, rounds, tell }) {
+async function rounded({ red, lines, rounds, calm, tell }) {
   const start = Date.now()
   const done = { rounds: 0, drops: 0, unplugs: 0, slowest: 0, ms: 0 }
   for (let turn = 1; turn <= rounds; turn++) {
     const kind = KINDS[turn % KINDS.length]
+    // else one deploy would follow the other before the first exchange
+    if (calm) await new Promise(resolve => setTimeout(resolve, (turn * 37) % 150))
     const began = Date.now()
-    if (turn % 7 === 0) drop(lines, done)
-    if (turn % 25 === 0) unplug(lines, done)
-    if (turn % 25 === 1) replug(lines)
+    if (!calm && turn % 7 === 0) drop(lines, done)
+    if (!calm && turn % 25 === 0) unplug(lines, done)
+    if (!calm && turn % 25 === 1) replug(lines)
     await deployed(red, flowOf(lines.settings, kind.change(turn)), kind.type)
     done.rounds = turn
     done.slowest = Math.max(done.slowest, Date.now() - began)

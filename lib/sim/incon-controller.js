@@ -1,6 +1,7 @@
 'use strict'
 
 const { START, missingBetween, nextNumber, seal, unseal } = require('../codec/incon/check')
+const { createNcSender } = require('../codec/incon/handshake')
 const { createInconProgram } = require('./incon-program')
 const { prepare } = require('./incon-state')
 
@@ -64,6 +65,8 @@ function switchOn(incon) {
   Object.assign(incon, { busy: false, number: START, lastNumber: null })
   Object.assign(incon.recv, { length: 0, finish: 0 })
   Object.assign(incon.send, { length: 0, finish: 0 })
+  // the NC, too: what it was sending concerns nobody any more
+  incon.ncSender = createNcSender(incon.send)
   begin(incon)
 }
 
@@ -165,6 +168,7 @@ function ncLook(incon) {
   const end = transmit ? transmit(bytes) : at
   keepIn(incon, incon.sent, { at, end, bytes, text: textOf(bytes) })
   const left = () => {
+    if (incon.ncSender !== ncSender) return
     ncSender.sent()
     incon.program?.left()
     ncLook(incon)

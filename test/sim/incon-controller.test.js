@@ -142,6 +142,59 @@ describe('simulated INCON controller', () => {
     assert.deepStrictEqual([controller.messages.map(({ text }) => text), controller.counts.messages], [['B', 'C'], 3])
   })
 
+  it('acknowledged lines: says its start until it is answered; answers lines, and repeats its own', async () => {
+    const { clock, controller, write, heard } = listen({ acknowledge: true, scan: 10, attempts: 3 })
+    await clock.drain()
+    // 00 and a text, the XOR of all before the star; three times
+    const [start, ...again] = heard().split('\r\n').slice(0, -1)
+    assert.match(start, /^#00 [\da-z]+\*[\dA-F]{2}$/)
+    assert.deepStrictEqual(again, [start, start])
+    write('#01 A*43\r\n')
+    await clock.advance(100)
+    assert.strictEqual(controller.counts.messages, 0)
+    write('!00*21\r\n')
+    await clock.advance(200)
+    // 23h ^ 30h ^ 32h ^ 20h ^ 42h = 43h
+    for (const line of ['#01 A*43', '#01 A*43', '#02 B*43', '#03 C*00']) {
+      write(`${line}\r\n`)
+      await clock.advance(300)
+    }
+    assert.deepStrictEqual(
+      controller.messages.map(({ text, valid }) => [text, valid]),
+      [
+        ['A', true],
+        ['B', true],
+        ['#03 C*00', false]
+      ]
+    )
+    assert.match(heard(), /!01\*20\r\n!01\*20\r\n!02\*23\r\n$/)
+    controller.say('X')
+    controller.say('Y')
+    await clock.advance(100)
+    write('!01*20\r\n')
+    await clock.drain()
+    assert.deepStrictEqual(controller.outcomes, [
+      { text: 'X', outcome: 'confirmed', attempts: 1 },
+      { text: 'Y', outcome: 'unknown', attempts: 3 }
+    ])
+    assert.strictEqual(heard().match(/#02 Y\*58/g)?.length, 3)
+  })
+
+  it('switched off and on while it sends: the new life is not held up by the old one', async () => {
+    const { clock, controller, write, heard } = listen({ acknowledge: true, scan: 10, attempts: 1 })
+    write('!00*21\r\n')
+    await clock.advance(15)
+    controller.restart()
+    await clock.advance(100)
+    write('!00*21\r\n')
+    await clock.advance(50)
+    controller.say('X')
+    await clock.advance(100)
+    assert.match(heard(), /#01 X\*5A\r\n$/)
+    controller.close()
+    await clock.drain()
+  })
+
   it('settings that cannot be are refused', () => {
     const clock = createVirtualClock()
     for (const [code, settings] of [

@@ -1087,14 +1087,14 @@ var nxlineSerialPlc = (() => {
       for (const row of NUMBERS) TYPES.set(row[0], numberType(row));
       var TYPE_NAMES = Object.freeze([...TYPES.keys(), "string[n]"]);
       var parseType = (text) => {
-        const name = String(text).trim().toLowerCase();
+        const name = typeof text === "string" ? text.trim().toLowerCase() : "";
         const known = TYPES.get(name);
         if (known) return known;
         const string = /^string\s*\[\s*(\d+)\s*\]$/.exec(name);
         const length = string ? Number(string[1]) : 0;
         if (length >= 1 && length <= MOST_STRING) return stringType(length);
         const reason = name.startsWith("string") ? `write string[n] with n = 1 to ${MOST_STRING} bytes` : "there is no such type";
-        throw new PlcError("BAD_TYPE", { type: String(text), reason, known: TYPE_NAMES.join(", ") });
+        throw new PlcError("BAD_TYPE", { type: text, reason, known: TYPE_NAMES.join(", ") });
       };
       module.exports = { parseType, round };
     }
@@ -1251,6 +1251,7 @@ var nxlineSerialPlc = (() => {
       var RESERVED = new Set(Object.getOwnPropertyNames(Object.prototype).concat("prototype"));
       var MOST_TAGS = 1e4;
       var bad = (name, reason) => new PlcError("BAD_TAG", { name, reason });
+      var isPlain = (value) => value === null || !["object", "function", "symbol"].includes(typeof value);
       var textOf = (row, field) => {
         const value = Object.hasOwn(row, field) ? row[field] : void 0;
         return value === void 0 || value === null ? "" : String(value).trim();
@@ -1280,6 +1281,8 @@ var nxlineSerialPlc = (() => {
       };
       var readRow = (row, place) => {
         if (!row || typeof row !== "object" || Array.isArray(row)) throw bad(place, "it is not a row of fields");
+        const strange = FIELDS.find((field) => Object.hasOwn(row, field) && !isPlain(row[field]));
+        if (strange) throw bad(place, `${strange} is neither text nor a number`);
         const name = textOf(row, "name");
         if (!NAME.test(name)) throw bad(name || place, "a name is made of letters, digits and _, and starts with no digit");
         if (RESERVED.has(name)) throw bad(name, "this name is reserved");
@@ -1982,6 +1985,10 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { PlcError } = require_error();
       var blank = (value) => value === void 0 || value === null || typeof value === "string" && value.trim() === "";
+      var textOf = (setting, value) => {
+        if (!["object", "function", "symbol"].includes(typeof value)) return String(value).trim();
+        throw new PlcError("BAD_SETTING", { setting, value, reason: "text is needed" });
+      };
       var wholeNumber = (setting, value, { fallback, least, most }) => {
         if (blank(value)) return fallback;
         const number = typeof value === "string" ? Number(value) : value;
@@ -1990,14 +1997,14 @@ var nxlineSerialPlc = (() => {
       };
       var choice = (setting, value, known) => {
         if (blank(value)) return known[0];
-        const found = known.find((each) => String(each) === String(value).trim());
+        const found = known.find((each) => String(each) === textOf(setting, value));
         if (found !== void 0) return found;
         throw new PlcError("BAD_SETTING", { setting, value, reason: `known are ${known.join(", ")}` });
       };
-      var nameOf = (value, station) => blank(value) ? `station ${station}` : String(value).trim();
+      var nameOf = (value, station) => blank(value) ? `station ${station}` : textOf("name", value);
       var readRanges = (value, notation) => {
-        const given = Array.isArray(value) ? value : blank(value) ? [] : String(value).split(",");
-        return given.map((text) => String(text).trim()).filter((text) => text !== "").map((text) => {
+        const given = Array.isArray(value) ? value : blank(value) ? [] : textOf("writableRanges", value).split(",");
+        return given.map((text) => textOf("writableRanges", text)).filter((text) => text !== "").map((text) => {
           const { kind, address, count } = notation.parse(text);
           const size = kind === "word" ? 16 : 1;
           return { start: address * size, end: (address + count) * size };
@@ -2013,7 +2020,7 @@ var nxlineSerialPlc = (() => {
         const reason = `it is less than the time until the first probe, ${probeFirst}`;
         throw new PlcError("BAD_SETTING", { setting: "probeMost", value: probeMost, reason });
       };
-      module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber };
+      module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, textOf, wholeNumber };
     }
   });
 
@@ -2073,7 +2080,7 @@ var nxlineSerialPlc = (() => {
         if (ends.length > 2 || last < first || last > 255) throw bad(text.trim(), "it is not a range");
         return Array.from({ length: last - first + 1 }, (_, i) => first + i);
       }
-      var bad = (id, reason) => new PlcError("BAD_MASTER_ID", { id: String(id), reason });
+      var bad = (id, reason) => new PlcError("BAD_MASTER_ID", { id: typeof id === "object" ? id : String(id), reason });
       function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
         if (!Array.isArray(memory.resting)) memory.resting = [];
         const resting = memory.resting;
@@ -2220,7 +2227,7 @@ var nxlineSerialPlc = (() => {
       var LAST = 65535;
       function limitsOf(settings = {}) {
         const limits = { ...LIMITS };
-        for (const [name, given] of Object.entries(settings)) {
+        for (const [name, given] of Object.entries(settings ?? {})) {
           if (given === void 0) continue;
           if (!Object.hasOwn(LIMITS, name)) {
             throw new PlcError("BAD_SETTING", { setting: `limits.${name}`, value: given, reason: "there is no such limit" });
@@ -3197,7 +3204,7 @@ var nxlineSerialPlc = (() => {
         if (type === "chino-config") return [["", t("editor.deviceOrder")], ...known];
         return saved === "low" ? known : [["", t("editor.lowFirst")], known[1]];
       };
-      var narrow = (field) => field.css({ width: "54px", padding: "4px" });
+      var narrow = (field) => field.css({ width: "48px", padding: "4px" });
       var tagFields = (data, device) => {
         const writable = tick("writable", data.writable);
         const hint = t(device.type === "chino-config" ? "editor.modbusAddress" : "tooltip.address");
@@ -3211,8 +3218,9 @@ var nxlineSerialPlc = (() => {
           offset: narrow(cell("offset", data.offset, { shows: "0" })),
           deadband: narrow(cell("deadband", data.deadband, { shows: "0" })),
           wordOrder: pick("wordOrder", data.wordOrder, orders(data.wordOrder, device)).css({
-            flex: "0 1 108px",
-            minWidth: 0
+            flex: "0 1 132px",
+            minWidth: 0,
+            padding: "4px"
           }),
           min: narrow(cell("min", data.min, { shows: "–" })),
           max: narrow(cell("max", data.max, { shows: "–" })),

@@ -46,7 +46,7 @@ const orders = (saved, { type }) => {
 }
 
 /** A cell for a few digits; many stand in a row. */
-const narrow = field => field.css({ width: '54px', padding: '4px' })
+const narrow = field => field.css({ width: '48px', padding: '4px' })
 
 const tagFields = (data, device) => {
   const writable = tick('writable', data.writable)
@@ -61,8 +61,9 @@ const tagFields = (data, device) => {
     offset: narrow(cell('offset', data.offset, { shows: '0' })),
     deadband: narrow(cell('deadband', data.deadband, { shows: '0' })),
     wordOrder: pick('wordOrder', data.wordOrder, orders(data.wordOrder, device)).css({
-      flex: '0 1 108px',
-      minWidth: 0
+      flex: '0 1 132px',
+      minWidth: 0,
+      padding: '4px'
     }),
     min: narrow(cell('min', data.min, { shows: '–' })),
     max: narrow(cell('max', data.max, { shows: '–' })),

@@ -182,10 +182,10 @@ describe('simulated INCON controller', () => {
 
   it('switched off and on while it sends: the new life is not held up by the old one', async () => {
     const { clock, controller, write, heard } = listen({ acknowledge: true, scan: 10, attempts: 1 })
-    write('!00*21\r\n')
     await clock.advance(15)
     controller.restart()
     await clock.advance(100)
+    assert.strictEqual(heard().match(/#00 /g)?.length, 2)
     write('!00*21\r\n')
     await clock.advance(50)
     controller.say('X')

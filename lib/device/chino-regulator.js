@@ -13,7 +13,7 @@ class ChinoRegulator extends Device {
   constructor({ lease, clock, random, ...given }) {
     const settings = readSettings(given)
     const health = new Health({ lease, clock, settings, random })
-    const talk = new ModbusTalk({ lease, health, settings })
+    const talk = new ModbusTalk({ lease, health, settings, random })
     super({ settings, line: lease.line, talk, health, clock, random })
   }
 }
@@ -51,6 +51,7 @@ class ChinoRegulator extends Device {
  * @param {number} [options.demoteAfter] silences in a row after which the station is only probed, default 3; 0: never
  * @param {number} [options.probeFirst] ms until the first probe, default 5000; each further one after twice as long
  * @param {number} [options.probeMost] ms between two probes at most, default 60000
+ * @param {boolean} [options.probe08] after a timeout ask by function 08 whether anything late may come; only where answers come in order
  * @param {number} [options.deadline] ms that a request may wait for its turn, default no limit
  * @param {any} [options.clock]
  * @param {() => number} [options.random] 0 to 1

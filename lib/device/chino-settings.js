@@ -150,6 +150,7 @@ const readSettings = given => {
     framing,
     station,
     name: blank(given.name) && station === 0 ? 'all stations' : nameOf(given.name, station),
+    probe08: isOn(given.probe08),
     broadcast: broadcast ? { turnaround } : null,
     ranges: readRanges(given.writableRanges, notation),
     notation,

@@ -124,10 +124,11 @@ class Health {
         try {
           answer = yield this.#heard(step, patience)
         } catch (error) {
-          next = this.#failed(error, { request, dialog })
+          next = this.#failed(error, { request, dialog, step })
           continue
         }
-        if (step.match) this.#answered(request)
+        if (step.clears) this.#revive()
+        else if (step.match) this.#answered(request)
         next = dialog.next(answer)
       }
       return next.value
@@ -155,8 +156,9 @@ class Health {
     if (++this.#seen % LOOK === 0) this.#checkSpeed()
   }
 
-  #failed(error, { request, dialog }) {
-    const silent = error.code === 'TIMEOUT'
+  #failed(error, { request, dialog, step }) {
+    // it may only not know this query
+    const silent = error.code === 'TIMEOUT' && !step.clears
     if (silent) this.#silent(request)
     else if (DAMAGED.has(error.code)) this.#revive()
     const next = dialog.throw(error)
@@ -244,7 +246,7 @@ class Health {
       // it came back while the probe waited for its turn
       if (!this.#isDemoted) throw this.#error()
       const request = sampleOf(this.#health)
-      return this.#watch({ request, dialog: this.#talk.probing(request) }, this.#patience)
+      return this.#watch({ request, dialog: this.#talk.probing(request) }, this.patience)
     }
     const over = () => {
       this.#isProbing = false
@@ -254,7 +256,8 @@ class Health {
     this.#lease.run(make, { station, priority: PRIORITY.POLL, key: 'probe', label: 'probe' }).then(over, over)
   }
 
-  get #patience() {
+  /** How long a station is waited for that would answer at once, ms: learnt, or 500. */
+  get patience() {
     const { waits } = this.#memory
     const learnt = waits && waits.size >= LEARNT
     return learnt ? Math.max(LEAST_PATIENCE, waits.p99 * 1.5) : PATIENCE

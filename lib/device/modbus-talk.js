@@ -5,6 +5,7 @@ const { describeQuery } = require('../codec/modbus/answer')
 const { readDialog, writeDialog } = require('../codec/modbus/dialog')
 const { readFunction, writeFunction } = require('../codec/modbus/functions')
 const { announced } = require('./announced')
+const { Clearing } = require('./modbus-clearing')
 const { exchange } = require('./modbus-exchange')
 
 /**
@@ -56,14 +57,16 @@ class ModbusTalk {
   #health
   #settings
   #memory
+  #clearing
   #counts = { requests: 0, answers: 0, exceptions: 0, broadcasts: 0 }
 
-  /** @param {{ lease: any, health: import('./health').Health, settings: any }} options */
-  constructor({ lease, health, settings }) {
+  /** @param {{ lease: any, health: import('./health').Health, settings: any, random?: () => number }} options random: 0 to 1, for function 08 */
+  constructor({ lease, health, settings, random = Math.random }) {
     this.#lease = lease
     this.#health = health
     this.#settings = settings
     this.#memory = memoryOf(lease, settings.station)
+    this.#clearing = new Clearing({ lease, settings, health, memory: this.#memory, random })
   }
 
   /** `{ requests, answers, exceptions, broadcasts }` */
@@ -81,7 +84,7 @@ class ModbusTalk {
     const { station, deadline, framing } = this.#settings
     const key = `modbus ${framing} ${request.ask} ${request.base} ${request.count}`
     const label = `${request.ask} ${request.base} ${request.count}`
-    const make = () => ({ request, dialog: this.#reading(request) })
+    const make = () => ({ request, dialog: this.#cleared(this.#reading(request)) })
     return this.#health.run(make, { station, priority, key, deadline, label, request })
   }
 
@@ -103,7 +106,7 @@ class ModbusTalk {
     const facts = { writes: 0 }
     const make = () => {
       const taken = take()
-      return { request: taken.query, dialog: this.#writing(taken, facts) }
+      return { request: taken.query, dialog: this.#cleared(this.#writing(taken, facts)) }
     }
     try {
       return await this.#health.run(make, { station, priority, deadline, label: 'write' })
@@ -143,9 +146,17 @@ class ModbusTalk {
     throw new PlcError('BROADCAST_UNCONFIRMED', { item, line: this.#lease.line.name })
   }
 
+  #cleared(dialog) {
+    return this.#clearing.watch(dialog, this.#gap)
+  }
+
+  get #gap() {
+    return gapOf(this.#settings, this.#lease.line.times?.character ?? 0)
+  }
+
   #options() {
     const { station, framing, timeout, attempts } = this.#settings
-    const gap = gapOf(this.#settings, this.#lease.line.times?.character ?? 0)
+    const gap = this.#gap
     return { station, protocol: framing, timeout, attempts, gap, exchange }
   }
 
@@ -161,7 +172,9 @@ class ModbusTalk {
     }
   }
 
-  close() {}
+  close() {
+    this.#clearing.close()
+  }
 }
 
 module.exports = { ModbusTalk }

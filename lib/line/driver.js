@@ -15,6 +15,8 @@ class Driver {
   #least
   /** @type {any} the run whose step is on the wire */
   #active = null
+  /** between two steps: whoever is told of something now may ask, but has to wait for its turn */
+  #turning = false
 
   /**
    * @param {any} parts `{ exchange, scheduler, quarantine, recorder }` of the line
@@ -34,7 +36,7 @@ class Driver {
 
   /** Lets the next one go, if the wire is free. */
   pump() {
-    while (!this.#active && this.#scheduler.size > 0 && !this.#host.refusal()) {
+    while (!this.#active && !this.#turning && this.#scheduler.size > 0 && !this.#host.refusal()) {
       const run = this.#scheduler.next()
       if (!run) return
       if (run.started) this.#go(run)
@@ -42,13 +44,24 @@ class Driver {
     }
   }
 
+  /** @template T @param {() => T} fn @returns {T} */
+  #turn(fn) {
+    const was = this.#turning
+    this.#turning = true
+    try {
+      return fn()
+    } finally {
+      this.#turning = was
+    }
+  }
+
   /** The conversation goes on by one step: at once, or when its station may be asked again. */
   #resume(run, error, answer) {
-    if (!run.advance(error, answer)) return
+    if (!this.#turn(() => run.advance(error, answer))) return
     this.#announce(run)
     const refusal = this.#host.refusal()
     if (refusal) run.stop(refusal)
-    else if (this.#scheduler.isReady(run.station)) this.#go(run)
+    else if (run.step.clears || this.#scheduler.isReady(run.station)) this.#go(run)
     else this.#scheduler.hold(run)
   }
 
@@ -76,9 +89,16 @@ class Driver {
   }
 
   #ended(run, error, answer, facts) {
+    this.#active = null
+    this.#turn(() => this.#note(run, { error, answer, facts }))
+    this.#resume(run, error, answer)
+    this.pump()
+  }
+
+  /** What became of a step. */
+  #note(run, { error, answer, facts }) {
     const { station, step } = run
     this.#recorder.ended({ station, step, error, answer, facts })
-    this.#active = null
     if (error) {
       // of a frame of full length nothing more can come; of all else something may
       if (error.code !== 'CRC_ERROR') this.#unanswered(run, { ...facts, seen: answer })
@@ -86,15 +106,15 @@ class Driver {
     } else if (step.match) {
       this.#recorder.stats.waited(station, facts.wait)
       this.#quarantine.answered(station, answer)
+      if (step.clears?.(answer)) this.#quarantine.cleared(station)
       this.#host.answered(station)
     }
     if (facts.rest.length > 0) this.#host.stray(facts.rest)
-    this.#resume(run, error, answer)
-    this.pump()
   }
 
   #unanswered({ station, step }, facts) {
-    if (!facts?.sent || !step.match) return
+    // what clears proves something or nothing: heard later on, it may be our own echo
+    if (!facts?.sent || !step.match || step.clears) return
     const { due, seen } = facts
     this.#quarantine.failed({ station, match: step.match, timeout: timeOf(step), due, seen })
   }

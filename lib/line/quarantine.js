@@ -99,6 +99,7 @@ class Quarantine {
       due,
       timeout,
       bytes: seen,
+      since: this.#clock.now(),
       until: from + WATCH * memory.bound
     })
     if (this.#watchers.length > MOST_WATCHERS) this.#watchers.pop()
@@ -111,6 +112,14 @@ class Quarantine {
     for (const memory of this.#memories.values()) {
       if (memory.asked) memory.until = Math.max(memory.until, now + memory.bound)
     }
+  }
+
+  /** The station has answered what it was asked after all else: in order, so nothing older can come. */
+  cleared(station) {
+    const memory = this.memory(station)
+    const now = this.#clock.now()
+    memory.clearedAt = now
+    memory.until = Math.min(memory.until, now)
   }
 
   /** An answer was taken: recognisers that cannot tell it from a late one know nothing any more. */
@@ -139,6 +148,8 @@ class Quarantine {
     const others = this.#watchers.filter(w => w.station === station)
     for (const other of others) other.bytes = watcher.bytes
     const memory = this.memory(station)
+    // older than what was answered since: answers do not come in order here
+    if (memory.clearedAt >= watcher.since) memory.overtaken = true
     const lateness = now - due
     // in time, but nobody waited any more (a redeploy): nothing else can come
     if (lateness <= 0) {

@@ -2,7 +2,7 @@
 
 const { encodeAnswer, encodeException } = require('../codec/modbus/answer')
 const { fromAscii, toAscii } = require('../codec/modbus/ascii')
-const { EXCEPTION, FUNCTIONS, functionByNumber } = require('../codec/modbus/functions')
+const { EXCEPTION, FUNCTIONS, functionByNumber, LOOPBACK } = require('../codec/modbus/functions')
 const { closed, countOf, decodeQuery } = require('../codec/modbus/query')
 const { createModbusMemory } = require('./modbus-memory')
 const { createAsciiReceiver, createRtuReceiver } = require('./modbus-receiver')
@@ -23,7 +23,7 @@ const ASCII_GAP = 1000
  * - `protocol` `rtu` (default) or `ascii`; `baudRate` (19200) and `bitsPerByte` (10) give the 3.5 characters of silence of RTU
  * - `turnaround` ms from the end of a query to the start of the answer, a number or [least, most]; RTU at least 3.5 characters
  * - `gap` ms of silence after which a half-received frame is forgotten (3.5 characters, in ASCII 1000)
- * - `functions` those that it has (1, 2, 3, 4, 5, 6, 15, 16); others: exception 01
+ * - `functions` those that it has (1, 2, 3, 4, 5, 6, 8, 15, 16); others: exception 01. Of 08 it knows sub-function 0000: the query comes back
  * - `limits` items per frame by function, as in `{ 3: 32 }`; beyond them, or with 0 items: exception 03
  * - `tables` what a table has, as in `{ hr: ['400001..400100', 'hr200'], ir: [] }`; the rest of it: exception 02
  * - `protect` addresses that cannot be written, as in `['400010..400019', 'co5']`: exception `protectError` (3)
@@ -68,7 +68,7 @@ function prepare(settings) {
     station: Number(station),
     protocol,
     protectError,
-    functions: new Set(functions ?? FUNCTIONS.map(({ fn }) => fn)),
+    functions: new Set(functions ?? [...FUNCTIONS.map(({ fn }) => fn), LOOPBACK]),
     limits,
     turnaround: () => Math.max(turnaround(), ascii ? 0 : silence),
     memory: createModbusMemory({ heating: !settings.behaviour, ...settings, now: settings.clock.now }),
@@ -102,6 +102,7 @@ function isForMe({ station, counts }, { rtu }) {
 /** @returns {Buffer | null} RTU; null: silence */
 function answerTo(chino, rtu, refuse) {
   const { station, counts } = chino
+  if (rtu[1] === LOOPBACK) return loopbackOf(chino, rtu, refuse)
   const asked = decodeQuery(rtu)
   const silent = asked.station === BROADCAST
   const exception = refuse ?? judge(chino, asked)
@@ -113,6 +114,15 @@ function answerTo(chino, rtu, refuse) {
   const values = execute(chino, query)
   chino.onExecute?.({ at: chino.clock.now(), query, station })
   return silent ? null : encodeAnswer(query, station, values)
+}
+
+/** Sub-function 0000 of 08 ("MODBUS application protocol" 6.8); another one is unknown: exception 01. */
+function loopbackOf({ station, counts, functions }, rtu, refuse) {
+  const known = functions.has(LOOPBACK) && rtu[2] === 0 && rtu[3] === 0
+  const exception = refuse ?? (known ? 0 : CODE.FUNCTION)
+  if (exception) counts.errors++
+  else counts.executed++
+  return exception ? encodeException(LOOPBACK, station, exception) : closed(rtu.subarray(0, -2))
 }
 
 /** The exception that "MODBUS application protocol" 6 asks for, in its order: function, count, address, then the device's own; 0: none. */

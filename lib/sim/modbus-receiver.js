@@ -1,7 +1,7 @@
 'use strict'
 
 const { COLON, CR, LF, fromAscii } = require('../codec/modbus/ascii')
-const { EXCEPTION, functionByNumber } = require('../codec/modbus/functions')
+const { EXCEPTION, functionByNumber, LOOPBACK } = require('../codec/modbus/functions')
 const { crcFits } = require('../codec/modbus/query')
 const { createReceiver } = require('./receiver')
 
@@ -46,6 +46,7 @@ function lengthsAt(held, at, { mine, aligned }) {
 function knownLengths(held, at, mine) {
   const row = functionByNumber(held[at + 1])
   const lengths = []
+  if (held[at + 1] === LOOPBACK) return [8]
   if (row) {
     if (row.request !== 'multiple') lengths.push(8)
     else if (held.length - at > 6) lengths.push(9 + held[at + 6])

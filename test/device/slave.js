@@ -93,6 +93,8 @@ const createSlave = ({ station = 11, protocol = 'rtu', has = () => true, turnaro
   ]
   const carryOut = body => {
     const [, fn] = body
+    // return query data
+    if (fn === 8) return body[2] === 0 && body[3] === 0 ? body : [station, 0x88, 1]
     const base = pair(body, 2)
     const count = fn === 5 || fn === 6 ? 1 : pair(body, 4)
     const table = { 1: 'co', 2: 'di', 3: 'hr', 4: 'ir', 5: 'co', 6: 'hr', 15: 'co', 16: 'hr' }[fn]

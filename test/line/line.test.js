@@ -101,6 +101,47 @@ describe('line: requests', () => {
   })
 })
 
+describe('line: who is told of an event may ask at once', () => {
+  /** Two steps, one after the other. */
+  function* twice(station) {
+    const first = yield { send: toy.query(station, 1), match: toy.answerTo(station, 1), timeout: 200 }
+    const second = yield { send: toy.query(station, 2), match: toy.answerTo(station, 2), timeout: 200 }
+    return [first[4], second[4]]
+  }
+
+  it('a late answer behind the first of two steps: neither conversation takes the other one’s turn', async () => {
+    const late = toy.answer(1, [66])
+    const bench = createBench({
+      onQuery: (bytes, wire, n) => {
+        const answer = toy.answer(bytes[1], [n], bytes[2])
+        // the first query is answered behind the answer to the second one
+        if (n > 1) wire.reply(n === 2 ? Buffer.concat([answer, late]) : answer)
+      }
+    })
+    const { lease, run } = bench
+    const asked = []
+    lease.on('event', () => asked.push(lease.run(() => toy.ask(3), { station: 3 })))
+    assert.equal((await run(failure(lease.run(() => toy.ask(1), { station: 1 })))).code, 'TIMEOUT')
+    assert.deepEqual(await run(lease.run(() => twice(2), { station: 2 })), [2, 3])
+    assert.deepEqual(await run(Promise.all(asked)), [[4]])
+  })
+
+  it('nor where the conversation itself causes the event', async () => {
+    const bench = createBench({ onQuery: (bytes, wire, n) => wire.reply(toy.answer(bytes[1], [n], bytes[2])) })
+    const { lease, run } = bench
+    function* telling() {
+      lease.line.report({ event: 'test', station: 2 })
+      const values = yield* twice(2)
+      lease.line.report({ event: 'test', station: 2 })
+      return values
+    }
+    const asked = []
+    lease.on('event', () => asked.push(lease.run(() => toy.ask(3), { station: 3 })))
+    assert.deepEqual(await run(lease.run(telling, { station: 2 })), [1, 2])
+    assert.deepEqual(await run(Promise.all(asked)), [[3], [4]])
+  })
+})
+
 describe('line: opening, losing, coming back', () => {
   const notFound = new PlcError('PORT_NOT_FOUND', { path: 'x' })
 

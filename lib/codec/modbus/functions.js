@@ -38,6 +38,9 @@ function table(rows) {
 /** An answer with this bit in its function is an exception. */
 const EXCEPTION = 0x80
 
+/** Diagnostics, sub-function 0000: the request comes back. It carries no values, so it is no row of the table; loopback.js sends it. */
+const LOOPBACK = 0x08
+
 const byNumber = new Map(FUNCTIONS.map(row => [row.fn, row]))
 const find = (name, request) =>
   /** @type {FunctionRow} */ (FUNCTIONS.find(row => row.table === name && row.request === request)) ?? null
@@ -72,4 +75,4 @@ const readFunction = name => find(name, 'block').fn
  */
 const writeFunction = (name, { single }) => find(name, single ? 'single' : 'multiple')?.fn ?? null
 
-module.exports = { EXCEPTION, FUNCTIONS, functionByNumber, functionOf, readFunction, writeFunction }
+module.exports = { EXCEPTION, FUNCTIONS, LOOPBACK, functionByNumber, functionOf, readFunction, writeFunction }

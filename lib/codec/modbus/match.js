@@ -1,7 +1,7 @@
 'use strict'
 const { EXCEPTION_LENGTH, expectedAnswer } = require('./answer')
 const { asciiAnswerTo } = require('./match-ascii')
-const { EXCEPTION, functionByNumber } = require('./functions')
+const { EXCEPTION, functionByNumber, LOOPBACK } = require('./functions')
 const { crcFits } = require('./query')
 
 /**
@@ -32,9 +32,18 @@ const ours = length => ({ kind: /** @type {const} */ ('ours'), length })
  * @returns {(bytes: Uint8Array) => Verdict}
  */
 function answerTo(query, { station, protocol = 'rtu', sent }) {
-  const expected = expectedAnswer(query, station)
-  if (protocol === 'ascii') return asciiAnswerTo(expected, { station, fn: query.fn, sent })
-  const look = looker(expected, { station, fn: query.fn, sent })
+  return frameTo(expectedAnswer(query, station), { station, fn: query.fn, protocol, sent })
+}
+
+/**
+ * The same for a frame that is known by its length and beginning.
+ * @param {import('./answer').Expected} expected
+ * @param {{ station: number, fn: number, protocol: 'rtu'|'ascii', sent?: Uint8Array }} options
+ * @returns {(bytes: Uint8Array) => Verdict}
+ */
+function frameTo(expected, { station, fn, protocol, sent }) {
+  if (protocol === 'ascii') return asciiAnswerTo(expected, { station, fn, sent })
+  const look = looker(expected, { station, fn, sent })
   return bytes => judge(bytes, look)
 }
 
@@ -104,8 +113,9 @@ function lengthAt(bytes, at) {
   const fn = bytes[at + 1]
   if (fn === undefined) return undefined
   const row = functionByNumber(fn & ~EXCEPTION)
-  if (!row) return 0
+  if (!row && (fn & ~EXCEPTION) !== LOOPBACK) return 0
   if (fn & EXCEPTION) return EXCEPTION_LENGTH
+  if (!row) return 8
   if (row.answer === 'echo') return 8
   const count = bytes[at + 2]
   if (count === undefined) return undefined
@@ -147,4 +157,4 @@ function afterDamage(bytes, { kind, length }, look) {
   return kind === 'other' ? { skip: length } : { bad: 'CRC', length }
 }
 
-module.exports = { answerTo }
+module.exports = { answerTo, frameTo }

@@ -729,6 +729,7 @@ var nxlineSerialPlc = (() => {
         );
       }
       var EXCEPTION = 128;
+      var LOOPBACK = 8;
       var byNumber = new Map(FUNCTIONS.map((row) => [row.fn, row]));
       var find = (name, request) => (
         /** @type {FunctionRow} */
@@ -745,7 +746,7 @@ var nxlineSerialPlc = (() => {
       var functionByNumber = (fn) => byNumber.get(fn);
       var readFunction = (name) => find(name, "block").fn;
       var writeFunction = (name, { single }) => find(name, single ? "single" : "multiple")?.fn ?? null;
-      module.exports = { EXCEPTION, FUNCTIONS, functionByNumber, functionOf, readFunction, writeFunction };
+      module.exports = { EXCEPTION, FUNCTIONS, LOOPBACK, functionByNumber, functionOf, readFunction, writeFunction };
     }
   });
 

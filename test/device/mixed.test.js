@@ -20,7 +20,8 @@ describe('NX PLCs and regulators on one line', () => {
     [nx(255), modbus(1), /255/],
     [nx(1), modbus(0), /broadcast/],
     [nx(1, [0xe2, 0xe3]), modbus(0xe3), /master ID 227/],
-    [nx(1, [0xe2]), modbus(0xe3), '']
+    [nx(1, [0xe2]), modbus(0xe3), ''],
+    [{ protocol: 'nx', station: 1, name: 'NX without IDs' }, modbus(0xe3), '']
   ]
   for (const [one, other, reason] of rules) {
     it(`${one.name} and ${other.name}: ${reason || 'may share it'}`, () => {

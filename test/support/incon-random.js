@@ -3,6 +3,7 @@
 /** Random bytes for everything that reads lines of an INCON controller: no exception, nothing grows, no line that the bytes do not hold. */
 
 const assert = require('node:assert/strict')
+const { accept, createReception, judge } = require('../../lib/codec/incon/acknowledge')
 const { START, missingBetween, unseal } = require('../../lib/codec/incon/check')
 const { createHandshake, createNcReceiver, createReceiveExample } = require('../../lib/codec/incon/handshake')
 const { createLineSplitter, encodeLine } = require('../../lib/codec/incon/message')
@@ -11,6 +12,20 @@ const { createRandom } = require('../../lib/sim')
 const MOST = 40
 /** Bytes that mean something to one of them come often. */
 const SIGNS = Buffer.from('\r\n\n#*0123456789AaFf \0')
+
+const WHOLE = ['data', 'ack', 'start']
+
+/** Whoever acknowledges lines takes none twice in a row. */
+const createReceiver = () => {
+  const reception = createReception()
+  return ({ number, bytes }) => {
+    const line = { number, text: bytes }
+    const { verdict, lost } = judge(reception, line)
+    assert.ok(lost >= 0 && lost < 99)
+    if (verdict === 'new') accept(reception, line)
+    if (verdict !== 'doubtful') assert.equal(judge(reception, line).verdict, 'repeated')
+  }
+}
 
 /** The manual's structure and program, which take whatever comes. */
 const createPlc = restart => {
@@ -31,9 +46,10 @@ const createPlc = restart => {
 const inconRandom = ({ inputs, seed = 1 }) => {
   const random = createRandom(seed)
   const below = most => Math.floor(random.next() * most)
-  const splitters = [{}, { ascii: false }, { checked: true }, { most: 2 }].map(options =>
-    createLineSplitter({ most: MOST, ...options })
+  const splitters = [{}, { ascii: false }, { checked: true }, { most: 2 }, { checked: true, acknowledge: true }].map(
+    options => createLineSplitter({ most: MOST, ...options })
   )
+  const hear = createReceiver()
   const plcs = [createPlc('always'), createPlc('once')]
   const done = { inputs, bytes: 0, lines: 0, sent: 0, taken: 0 }
   for (let n = 0; n < inputs; n++) {
@@ -47,7 +63,8 @@ const inconRandom = ({ inputs, seed = 1 }) => {
     for (const message of got) {
       done.lines++
       assert.ok(message.bytes.length <= MOST && !message.bytes.includes(0x0a))
-      assert.ok(message.complete ? message.kind === 'data' : message.reason)
+      assert.ok(message.complete ? WHOLE.includes(message.kind) : message.reason)
+      if (message.kind === 'data' && message.number > 0) hear(message)
       if (message.number !== undefined) assert.ok(missingBetween(START, message.number) < 99)
     }
     done.taken += plcs[n % plcs.length](input)

@@ -39,7 +39,7 @@ class Monitor {
     this.#stop = watch({
       state: (state, reason, line) => this.#became(state, reason, line),
       event: event => this.#noticed(event),
-      ...(frame ? { frame } : {})
+      frame
     })
     if (interval > 0) this.#tick(interval)
   }
@@ -52,11 +52,12 @@ class Monitor {
   }
 
   #became(state, reason, line) {
-    const isNew = state !== 'closed' && line !== this.#line
+    const before = this.#line
     this.#line = state === 'closed' ? null : line
     this.#state = state
     this.#reason = reason
-    if (isNew || !this.#line) this.#since.busy = this.#counts().busy
+    // its counters begin anew
+    if (this.#line !== before) this.#since.busy = this.#counts().busy
     this.#tell()
   }
 

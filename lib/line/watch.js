@@ -73,9 +73,7 @@ class Watcher {
 
   #state(line, state, reason) {
     if (state === 'closed') this.#leave(line)
-    if (this.#current !== line) return
-    if (state === 'closed') this.#current = null
-    this.#told.state(state, reason, line)
+    if (this.#current === line) this.#told.state(state, reason, line)
   }
 
   #leave(line) {

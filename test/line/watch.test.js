@@ -179,6 +179,19 @@ describe('line: watching a wire', () => {
     assert.deepEqual([other.events, other.states], [[], [['closed', undefined]]])
   })
 
+  it('ending one twice does not end another that came meanwhile', async () => {
+    const { clock, pool, wire, lease, open, run } = createBench()
+    await run(lease.release())
+    const first = pool.watch({ transport: 'simulated', wire }, {})
+    first()
+    const { states, state } = notes()
+    pool.watch({ transport: 'simulated', wire }, { state })
+    first()
+    open()
+    await clock.advance(1)
+    assert.deepEqual(states.at(-1), ['open', undefined])
+  })
+
   it('a watcher that throws is a warning; the line and the other watchers go on', async () => {
     const { clock, wire, pool, lease, run } = createBench({ onQuery: answering })
     const warnings = []
@@ -230,7 +243,7 @@ describe('line: frames for a watcher', () => {
   })
 
   it('noise is one row a burst, told when it is over, or after 200 ms', async () => {
-    const { wire, lease, run, rows, clock } = await watched({ onQuery: answering })
+    const { wire, lease, run, rows, clock, stop } = await watched({ onQuery: answering })
     for (let n = 0; n < 5; n++) {
       wire.handlers.data(Buffer.from([0x80 + n]))
       await clock.advance(10)
@@ -246,6 +259,11 @@ describe('line: frames for a watcher', () => {
     assert.equal(rows.length, 3)
     await clock.advance(2)
     assert.equal(rows[3].bytes, '99')
+    await clock.advance(200)
+    wire.handlers.data(Buffer.from([0x9a]))
+    stop()
+    await clock.advance(1000)
+    assert.equal(rows.length, 4)
   })
 
   it('of a listening line as well; none after the end', async () => {
@@ -307,6 +325,20 @@ describe('line: monitor', () => {
     monitor.stop()
     await clock.advance(5000)
     assert.equal(told.length, 3)
+  })
+
+  it('frames; and nothing of it is needed', async () => {
+    const { clock, pool, lease, wire } = createBench({ onQuery: answering })
+    const rows = []
+    const monitors = [{ frame: row => rows.push(row) }, { interval: 100 }, undefined].map(options =>
+      pool.monitor({ transport: 'simulated', wire }, options)
+    )
+    await clock.run(lease.run(() => toy.ask(4), { station: 4 }))
+    await clock.advance(300)
+    assert.deepEqual(rows, lease.line.trace())
+    assert.ok(monitors.every(monitor => monitor.statistics().answers === 1))
+    for (const monitor of monitors) monitor.stop()
+    assert.equal(clock.pending(), 0)
   })
 
   it('percent busy counts from the monitor on, and anew with each line', async () => {

@@ -2081,7 +2081,14 @@ var nxlineSerialPlc = (() => {
         if (ends.length > 2 || last < first || last > 255) throw bad(text.trim(), "it is not a range");
         return Array.from({ length: last - first + 1 }, (_, i) => first + i);
       }
-      var bad = (id, reason) => new PlcError("BAD_MASTER_ID", { id: typeof id === "object" ? id : String(id), reason });
+      var bad = (id, reason) => new PlcError("BAD_MASTER_ID", { id: shown(id), reason });
+      var shown = (id) => {
+        try {
+          return String(id);
+        } catch {
+          return typeof id;
+        }
+      };
       function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
         if (!Array.isArray(memory.resting)) memory.resting = [];
         const resting = memory.resting;

@@ -42,8 +42,16 @@ function expand(text) {
   return Array.from({ length: last - first + 1 }, (_, i) => first + i)
 }
 
-// an object may have no text
-const bad = (id, reason) => new PlcError('BAD_MASTER_ID', { id: typeof id === 'object' ? id : String(id), reason })
+const bad = (id, reason) => new PlcError('BAD_MASTER_ID', { id: shown(id), reason })
+
+/** An object may have no text. */
+const shown = id => {
+  try {
+    return String(id)
+  } catch {
+    return typeof id
+  }
+}
 
 /**
  * Hands the IDs out in turn, one to a query. One whose exchange failed rests until {@link free}: call that when no answer can come any more

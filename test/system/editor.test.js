@@ -255,6 +255,46 @@ for (const { name, red, node } of RUNTIMES) {
       await picture('regulator deployed')
     })
 
+    const field = property => page.locator(`#node-input-${property}`)
+    const shown = property => field(property).isVisible()
+
+    it('a C24: its dialog shows what the protocol needs', async () => {
+      await importExample('13', 'C24 words to MQTT')
+      await openDialog('melsec-c24')
+      await field('framing').selectOption('end')
+      assert.deepEqual([await shown('end'), await shown('count')], [true, false])
+      await field('framing').selectOption('count')
+      assert.deepEqual([await shown('end'), await shown('count')], [false, true])
+      await picture('melsec-c24')
+      await field('bidirectional').check()
+      assert.equal(await shown('framing'), false)
+      await openPage('melsec-c24', 'sending')
+      assert.equal(await shown('access'), true)
+      await openPage('melsec-c24', 'details')
+      await picture('melsec-c24 details')
+      await closeDialog()
+    })
+
+    it('an INCON controller: what acknowledged lines need is shown with checked lines only', async () => {
+      await importExample('14', 'INCON machine events')
+      await openDialog('incon-link')
+      const fields = async () => [await shown('acknowledge'), await shown('ackTimeout')]
+      assert.deepEqual(await fields(), [false, false])
+      await field('checked').check()
+      assert.deepEqual(await fields(), [true, false])
+      await field('acknowledge').check()
+      assert.deepEqual(await fields(), [true, true])
+      await picture('incon-link')
+      await field('checked').uncheck()
+      assert.deepEqual([await fields(), await field('acknowledge').isChecked()], [[false, false], false])
+      await openPage('incon-link', 'sending')
+      assert.equal(await field('scan').inputValue(), '100')
+      await field('access').selectOption('read')
+      assert.equal(await shown('scan'), false)
+      await picture('incon-link sending')
+      await closeDialog()
+    })
+
     it('nothing failed in the page meanwhile', () => assert.deepEqual(problems, []))
   })
 }

@@ -29,7 +29,8 @@ function watchTime(pool, link) {
   const spent = (station, from, to) => {
     const all = queries.map((query, n) => ({ ...query, ms: (queries[n + 1]?.at ?? to) - query.at }))
     const own = all.filter(query => query.station === station && query.at >= from && query.at < to)
-    return { requests: own.length, share: own.reduce((sum, { ms }) => sum + ms, 0) / (to - from) }
+    const longest = Math.round(Math.max(0, ...own.map(({ ms }) => ms)))
+    return { requests: own.length, longest, share: own.reduce((sum, { ms }) => sum + ms, 0) / (to - from) }
   }
   return Object.assign(spent, { stop })
 }
@@ -37,9 +38,9 @@ function watchTime(pool, link) {
 /**
  * @param {{ seconds: number, device?: 'nx'|'chino', timeout?: number, answersFirst?: boolean, more?: any, tell?: (text: string) => void }} options seconds: that the
  *   station is dead; answersFirst: it has answered before it dies (default), so that its p99 is known; more: further settings of the stations
- * @returns {Promise<{ before: number, dead: number, after: number, cost: number, later: number, probes: number, demoted: number, events: string[],
+ * @returns {Promise<{ before: number, dead: number, after: number, cost: number, later: number, probes: number, longest: number, demoted: number, events: string[],
  *   back: number, wrong: number }>} values per second of the nine others before, while it is dead, after; cost: share of the line's time that was spent
- *   on the dead station, later: the same once it was demoted; probes: so many of them; demoted: ms from its death until it was demoted; back: ms from its
+ *   on the dead station, later: the same once it was demoted; probes: so many of them, longest: the longest, ms; demoted: ms from its death until it was demoted; back: ms from its
  *   return to its first good value
  */
 async function deadStation({
@@ -112,6 +113,7 @@ async function deadStation({
       ...{ before, dead: during, after, wrong: seen.wrong },
       ...{ cost: spent(dead, died, ended).share, later: spent(dead, demoted?.at, ended).share },
       probes: spent(dead, demoted?.at, ended).requests,
+      longest: spent(dead, demoted?.at, ended).longest,
       demoted: demoted ? Math.round(demoted.at - died) : NaN,
       back: Math.round(back),
       events: events.map(({ event, station }) => `${event} ${station}`)

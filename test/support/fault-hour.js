@@ -252,4 +252,4 @@ async function faultHour({ minutes, seed = 1, every = 60000, rest = [3000, 15000
   }
 }
 
-module.exports = { faultHour, growthOf }
+module.exports = { RATES, faultHour, growthOf }

@@ -39,7 +39,10 @@ async function createTcpProxy(target) {
   const listen = () =>
     new Promise((resolve, reject) => {
       server.once('error', reject)
-      server.listen({ port, host: '127.0.0.1' }, () => resolve(undefined))
+      server.listen({ port, host: '127.0.0.1' }, () => {
+        server.off('error', reject)
+        resolve(undefined)
+      })
     })
   const drop = () => {
     for (const { near, far } of pairs) {

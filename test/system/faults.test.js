@@ -11,9 +11,12 @@ const fs = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
 const { SerialPort } = require('serialport')
-const { createNxLine, serveOnPty } = require('../../lib/sim')
+const { createPool } = require('../../lib')
+const { createNxLine, createPty, serveOnPty } = require('../../lib/sim')
 const { deadStation } = require('../support/dead-station.js')
+const { RATES } = require('../support/fault-hour.js')
 const { halfOpen } = require('../support/half-open.js')
+const { mixedLine } = require('../support/mixed-line.js')
 const { placed, startNodeRed, until } = require('../support/node-red.js')
 const { createStage, killedMaster, stoppedMaster, stoppedStation } = require('../support/processes.js')
 const { redeploys } = require('../support/redeploys.js')
@@ -31,6 +34,8 @@ const endurance = (...args) =>
     })
   })
 
+/** Of a busy machine, ms. */
+const LAG = 300
 /** A second process needs a moment to start, on a busy machine a long one. */
 const START = 3000
 
@@ -43,6 +48,7 @@ const RUNS = {
   killedMaster: () => killedMaster({ rounds: 5 }),
   stoppedNx: () => stoppedStation({ rounds: 4 }),
   stoppedChino: () => stoppedStation({ rounds: 4, device: 'chino' }),
+  mixed: () => mixedLine({ seconds: 15, rates: RATES.map(each => ({ ...each, rate: 4 * each.rate })) }),
   redeploys: () => redeploys({ rounds: 20, calm: true, baudRate: 9600 })
 }
 
@@ -61,7 +67,7 @@ describe('system: faults on real ports', function () {
     start([name])
     return runs[name]
   }
-  before(() => start(['replugs', 'halfOpen', 'dead', 'killedMaster']))
+  before(() => start(['replugs', 'halfOpen', 'dead', 'killedMaster', 'mixed']))
   after(() => Promise.allSettled(Object.values(runs)))
 
   it('8 of 8 replugs at any moment: values of both stations within 2 s and the bound, no descriptor left, no busy core', async () => {
@@ -80,11 +86,12 @@ describe('system: faults on real ports', function () {
     }
   })
 
-  it('one dead station of ten costs the others at most 5 % once it is demoted, and it comes back by itself', async () => {
-    const { later, probes, wrong, events, back, demoted } = await ended('dead')
+  it('one dead station of ten costs the others three timeouts, then half a second a probe at most, and it comes back by itself', async () => {
+    const { longest, probes, wrong, events, back, demoted } = await ended('dead')
     assert.equal(wrong, 0)
     assert.deepEqual(events, ['stationDemoted 10', 'stationBack 10'])
-    assert.ok(probes >= 1 && later <= 0.05, `${probes} probes, ${later} of the line's time`)
+    // that this is at most 5 % of an hour: `npm run endurance -- dead`, and in virtual time test/device/health.test.js
+    assert.ok(probes >= 1 && longest < 500 + LAG, `${probes} probes, the longest ${longest} ms`)
     // three timeouts, and a bound of lateness between them
     assert.ok(demoted < 3 * 500 + 2 * BOUND + BACK, `demoted after ${demoted} ms`)
     assert.ok(back < 10000, `back after ${back} ms`)
@@ -116,10 +123,17 @@ describe('system: faults on real ports', function () {
     })
   }
 
+  it('noise, damage, lateness, strangers and losses on a line of four stations: no value is wrong, whatever the fault', async () => {
+    const { wrong, values, writes, faults } = await ended('mixed')
+    assert.deepEqual(wrong, [])
+    assert.ok(values > 50 && writes > 5, `${values} values, ${writes} writes`)
+    assert.ok(Object.keys(faults).length >= 7, JSON.stringify(faults))
+  })
+
   it('20 deploys in the middle of traffic at 9600 bit/s: each below 2 s, no torn frame, no port in use, nothing left', async () => {
     const { rounds, torn, slowest, queries } = await ended('redeploys')
     assert.deepEqual([rounds, torn], [20, 0], `slowest ${slowest} ms`)
-    assert.ok(queries > rounds, `${queries} queries`)
+    assert.ok(queries >= rounds / 2, `${queries} queries`)
   })
 })
 
@@ -170,6 +184,37 @@ describe('system: ports that cannot be opened at first', function () {
     } finally {
       if (other.isOpen) await new Promise(resolve => other.close(resolve))
       await red.stop()
+    }
+  })
+
+  it('flow control that is never released: an error with a code, no hang, and it goes on when it is released', async () => {
+    const stop = Buffer.from([0x13])
+    const pty = createPty({ link: path.join(folder, 'stopped') })
+    const settings = { path: pty.path(), baudRate: 9600, flowControl: 'xonxoff', writeTimeout: 300, echo: 'off' }
+    const lease = createPool().open(settings, { id: 'a', name: 'a' })
+    const asking = function* () {
+      return yield { send: Buffer.alloc(40, 1), match: bytes => ({ take: bytes.length }), timeout: 500 }
+    }
+    const ask = () => lease.run(asking, { station: 1, latenessBound: 1 })
+    let stopped = true
+    pty.onData(() => void pty.write(Buffer.from('A')))
+    try {
+      await until(() => lease.line.state === 'open', { what: 'the port' })
+      lease.on('state', state => void (state === 'open' && stopped && pty.write(stop)))
+      pty.write(stop)
+      await new Promise(resolve => setTimeout(resolve, 50))
+      const from = performance.now()
+      const error = await ask().catch(each => each)
+      assert.equal(error.code, 'WRITE_STALLED')
+      assert.ok(performance.now() - from < 2000)
+      stopped = false
+      pty.write(Buffer.from([0x11]))
+      await until(() => ask().then(String, () => null), { what: 'an answer', every: 50 })
+    } finally {
+      const from = performance.now()
+      await lease.release()
+      assert.ok(performance.now() - from < 2000)
+      pty.close()
     }
   })
 

@@ -99,7 +99,7 @@ function valueOf({ format, msg }) {
 
 /**
  * @param {{ red?: string, node?: string, product?: string, settings?: object, modules?: Record<string, string>, flow?: object[],
- *   env?: object, probe?: boolean }} [options] red, node, product: as the variables above; probe: `count()` works
+ *   env?: object, probe?: boolean, flags?: string[] }} [options] flags: of Node.js; red, node, product: as the variables above; probe: `count()` works
  * @returns {Promise<Runtime>}
  */
 async function startNodeRed(options = {}) {
@@ -138,9 +138,9 @@ async function startNodeRed(options = {}) {
   return { url, userDir, child, stop, log: () => log, ...api(url), ...watching(comms), count: () => countIn(child) }
 }
 
-function spawnRed({ node = nodeBinary(), env = {}, probe = false }, args) {
+function spawnRed({ node = nodeBinary(), env = {}, probe = false, flags = [] }, args) {
   const preload = probe ? ['--expose-gc', '--require', path.join(__dirname, 'probe.js')] : []
-  return spawn(node, [...preload, ...args], {
+  return spawn(node, [...flags, ...preload, ...args], {
     cwd: args[2],
     env: { ...process.env, ...env },
     stdio: ['ignore', 'pipe', 'pipe', probe ? 'ipc' : 'ignore']

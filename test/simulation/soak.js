@@ -20,8 +20,10 @@ const PROTOCOLS = {
 }
 const MODES = ['safety', 'liveness']
 
-// `duplicated`: 0 or 1 ms behind the first, so within the silence that is kept before the next query; later it is a late answer that nobody misses
-/** Two faults at once are not claimed: an old frame behind an answer, or our own before it, may be all that is left whole. */
+/**
+ * Two faults at once are not claimed where an answer bears nothing of its query (MODBUS): an old frame behind an answer, or our own before it, may be
+ * all that is left whole.
+ */
 const WITH_ANOTHER = new Set(['merged', 'echo'])
 
 /**
@@ -36,9 +38,11 @@ function drawRun(seed, { protocol, mode, exchanges }) {
   const live = mode === 'liveness'
   const collisions = random.pick([/** @type {const} */ ('seen'), false])
   const share = live ? 1 : random.pick([0.1, 0.3, 0.6, 1])
+  // ms behind the first: within the silence that is kept before the next query; later it is a late answer that nobody misses
   const again = random.integer(0, 1)
+  const alone = collisions && protocol !== 'nx'
   const claimed = faults
-    .filter(({ kind }) => !(collisions && WITH_ANOTHER.has(kind)))
+    .filter(({ kind }) => !(alone && WITH_ANOTHER.has(kind)))
     .map(fault => (fault.kind === 'duplicated' ? { ...fault, argument: again } : fault))
   const stations = rows.filter(() => random.chance(0.7))
   const [least, most] = random.pick([

@@ -12,7 +12,8 @@
  *   npm run endurance -- frames [10000000]   so many damaged answers of each protocol, by class; what is claimed must not be taken once
  *   npm run endurance -- coverage [lib/codec] which branches no test takes, and why; a folder below its limit is a failure
  *   npm run endurance -- mutation [lib/codec] changes the code at each place; fewer than 85 % of them noticed by the tests is a failure.
- *                                             A folder or a pattern of files below lib/codec or lib/line; Stryker is installed for it
+ *                                             A folder or a pattern of files below lib/codec or lib/line; Stryker is installed for it.
+ *                                             With `again` behind it only what was not noticed the last time, and what has changed since
  * and those with faults on real ports: endurance-faults.js; with hostile input: endurance-hostile.js
  */
 
@@ -146,10 +147,11 @@ const RUNS = {
     if (failures.length > 0) throw new Error(failures.join('\n'))
   },
 
-  /** @param {string} [files] */
-  async mutation(files) {
+  /** @param {string} [files] @param {string} [again] */
+  async mutation(files, again) {
     const { failures } = await require(path.join(__dirname, '..', 'test', 'mutation', 'run.js')).mutation({
       files,
+      again: again === 'again',
       tell: print
     })
     if (failures.length > 0) throw new Error(failures.join('\n'))

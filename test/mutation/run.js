@@ -35,12 +35,15 @@ const PARTS = Object.freeze({
 })
 const LEAST = 85 // percent
 
-/** @param {{ name: string, mutate: string, spec: string[], jobs: number }} what */
-const options = ({ name, mutate, spec, jobs }) => ({
+/** @param {{ name: string, mutate: string, spec: string[], jobs: number, again: boolean }} what */
+const options = ({ name, mutate, spec, jobs, again }) => ({
   plugins: [path.join(PACKAGES, 'mocha-runner', 'dist', 'src', 'index.js')],
   testRunner: 'mocha',
   mochaOptions: { config: '.mocharc.json', spec },
   mutate: [mutate],
+  // what was noticed by a test that is still there, in code that is still the same, counts as noticed
+  incremental: again,
+  incrementalFile: path.join(REPORTS, `${name}.json`),
   coverageAnalysis: 'perTest',
   concurrency: jobs,
   // a mutant that turns a loop into an endless one is ended after 1.5 times the usual time and this
@@ -95,11 +98,11 @@ function chosen(files) {
   return [[folder, asked]]
 }
 
-async function runPart(folder, mutate, jobs) {
+async function runPart(folder, mutate, { jobs, again }) {
   const name = folder.replaceAll('/', '-')
   const file = path.join(ROOT, REPORTS, `${name}-options.json`)
   fs.mkdirSync(path.dirname(file), { recursive: true })
-  fs.writeFileSync(file, JSON.stringify(options({ name, mutate, spec: PARTS[folder].tests(), jobs }), null, 2))
+  fs.writeFileSync(file, JSON.stringify(options({ name, mutate, spec: PARTS[folder].tests(), jobs, again }), null, 2))
   const cli = path.join(PACKAGES, 'core', 'bin', 'stryker.js')
   const end = await run('nice', ['-n', '19', process.execPath, cli, 'run', file], { cwd: ROOT, stdio: 'inherit' })
   if (end !== 0) throw new Error(`the mutation tests of ${folder} ended with ${end}`)
@@ -107,15 +110,16 @@ async function runPart(folder, mutate, jobs) {
 }
 
 /**
- * @param {{ files?: string, jobs?: number, tell?: (text: string) => void }} [given] files: a folder or a pattern of files below lib/
+ * @param {{ files?: string, jobs?: number, again?: boolean, tell?: (text: string) => void }} [given] files: a folder or a pattern of files
+ *   below lib/; again: only what was not noticed the last time, and what has changed since
  * @returns {Promise<{ rows: { folder: string, killed: number, survived: number, score: number }[], failures: string[] }>}
  */
-async function mutation({ files = 'lib/codec', jobs = 2, tell = () => {} } = {}) {
+async function mutation({ files = 'lib/codec', jobs = 2, again = false, tell = () => {} } = {}) {
   const parts = chosen(files)
   await setUp(__dirname)
   const rows = []
   for (const [folder, mutate] of parts) {
-    const { killed, survived } = await runPart(folder, mutate, jobs)
+    const { killed, survived } = await runPart(folder, mutate, { jobs, again })
     rows.push({ folder: mutate === PARTS[folder].mutate ? folder : mutate, killed, survived })
   }
   if (rows.length > 1) {

@@ -112,7 +112,7 @@ export async function listening(): Promise<string> {
     const line: string | null = value
     if (reason === 'check') console.log(line?.length, number, lost)
   })
-  const sent: 'sent' | 'unknown' | 'refused' | 'failed' = (await link.send('O1234')).outcome
+  const sent: 'sent' | 'confirmed' | 'unknown' | 'refused' | 'failed' = (await link.send('O1234')).outcome
   await link.close()
   const image: number[] = toBufferMemory(Buffer.from('ABCDEFG123'), { unit: 'byte' })
   return outcome === 'confirmed' ? sent : `${code} ${attempts} ${ms} ${image[0]}`

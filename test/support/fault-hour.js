@@ -28,7 +28,7 @@ const RATES = [
 /** A value may be so old (ms) when it is judged here: a stopped process, its web socket. */
 const OLD = 8000
 const WARM = 10 // minutes
-/** Code that V8 compiles and optimises for hours would look like a leak of 6 MB an hour: so it compiles each function once, and for good. */
+/** Code that V8 compiles and optimises for hours would look like a leak of 5 MB an hour: so it compiles each function once, and for good. */
 const FLAGS = ['--no-opt', '--no-sparkplug', '--no-flush-bytecode', '--no-lazy-feedback-allocation']
 const HEAP = 1e6 // bytes an hour that are not called a slope
 

@@ -1,0 +1,105 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { openC24Port, openChinoRegulator, openInconLink, openNxPlc } = require('../../lib')
+const { Subscription } = require('../../lib/device/subscription')
+const { createVirtualClock } = require('../../lib/sim')
+
+const STOP = new Error('far enough')
+
+describe('a device on a line of its own', () => {
+  /** What a pool is asked for. */
+  const asked = (open, options) => {
+    let got
+    const pool = {
+      open: (settings, owner) => {
+        got = { settings, owner }
+        throw STOP
+      }
+    }
+    assert.throws(() => open({ pool, ...options }), STOP)
+    return got
+  }
+
+  for (const [name, open, options, called] of /** @type {[string, any, any, string][]} */ ([
+    ['NX PLC', openNxPlc, { station: 3 }, 'station 3'],
+    ['regulator', openChinoRegulator, { station: 3 }, 'station 3'],
+    ['C24 port', openC24Port, {}, 'C24'],
+    ['INCON link', openInconLink, {}, 'INCON']
+  ])) {
+    it(`${name}: over TCP with a host, else a serial port; the line is called by its path`, () => {
+      const transport = more => asked(open, { ...options, ...more }).settings.transport
+      assert.equal(transport({ path: '/dev/ttyUSB0' }), 'serial')
+      assert.equal(transport({ host: 'server', port: 4001 }), 'tcp')
+      assert.equal(transport({ host: 'server', transport: 'simulated' }), 'simulated')
+      const plain = asked(open, { ...options, path: 'p' })
+      assert.deepEqual([plain.settings.name, plain.owner.name], ['', called])
+      assert.equal(asked(open, { ...options, path: 'p', name: 'press' }).owner.name, 'press')
+    })
+  }
+})
+
+describe('polling that ends while it reads', () => {
+  const create = () => {
+    const clock = createVirtualClock()
+    const reads = []
+    const told = []
+    const plc = { read: () => new Promise((resolve, reject) => reads.push({ resolve, reject })) }
+    const subscription = new Subscription({
+      plc,
+      clock,
+      random: () => 0,
+      items: ['M0'],
+      interval: 100,
+      callback: (results, cycle) => told.push([results.length, cycle.failure?.code ?? null, cycle.changed])
+    })
+    return { clock, reads, told, subscription }
+  }
+  const settle = async clock => clock.advance(1)
+
+  it('nothing is told after it was stopped, nor asked again', async () => {
+    const { clock, reads, told, subscription } = create()
+    await settle(clock)
+    subscription.stop()
+    subscription.again()
+    reads[0].resolve([])
+    await clock.advance(1000)
+    assert.deepEqual([told, reads.length, clock.pending()], [[], 1, 0])
+  })
+
+  it('a read that is rejected is a cycle without values, told by its code, as a change once', async () => {
+    const { clock, reads, told, subscription } = create()
+    const fault = Object.assign(new Error('closed'), { code: 'LINE_CLOSED' })
+    await settle(clock)
+    reads[0].reject(fault)
+    await clock.advance(100)
+    reads[1].reject(fault)
+    await settle(clock)
+    assert.deepEqual(told, [
+      [0, 'LINE_CLOSED', true],
+      [0, 'LINE_CLOSED', false]
+    ])
+    subscription.again()
+    assert.equal(reads.length, 3, 'at once, since the last one failed')
+    subscription.again()
+    reads[2].reject(fault)
+    await settle(clock)
+    assert.equal(reads.length, 4, 'once more, since it was said while it ran')
+    reads[3].resolve([{ quality: 'good', value: 1 }])
+    await settle(clock)
+    subscription.again()
+    assert.equal(reads.length, 4)
+    subscription.stop()
+  })
+
+  it('a stop inside the callback ends it, also where it would be asked again', async () => {
+    const { clock, reads, subscription } = create()
+    await settle(clock)
+    subscription.again()
+    const { stop } = subscription
+    reads[0].reject(new Error('x'))
+    stop.call(subscription)
+    await clock.advance(500)
+    assert.equal(reads.length, 1)
+  })
+})

@@ -276,6 +276,27 @@ describe('C24 port, bidirectional protocol', () => {
     assert.deepEqual([second.outcome, second.code, second.attempts], ['failed', 'DEADLINE', 0])
   })
 
+  it('an answer to nothing is counted, and told nobody', async () => {
+    await opened()
+    bench.peer.say(ACK)
+    await bench.clock.advance(100)
+    bench.peer.say(Buffer.concat([ACK, VECTOR]))
+    await bench.clock.advance(100)
+    bench.peer.say(hex('15 24 7F'))
+    await bench.clock.advance(100)
+    assert.deepEqual([bench.values(), bench.device.stats.strayAnswers], [['ABCDEFG123'], 3])
+    assert.deepEqual(bench.peer.heard, [ACK])
+  })
+
+  it('a deadline is that of waiting for the turn; what is on the wire may end', async () => {
+    await opened({ port: { ackTimeout: 300 }, answers: [ACK] })
+    const { outcome, attempts } = await bench.send('AB', { deadline: 100 })
+    assert.deepEqual([outcome, attempts], ['confirmed', 1])
+    bench.peer.say(VECTOR.subarray(0, 7))
+    const late = await bench.send('CD', { deadline: 30 })
+    assert.deepEqual([late.outcome, late.code, late.bytes], ['failed', 'DEADLINE', 0])
+  })
+
   it('its queue is bounded', async () => {
     await opened({ port: { ackTimeout: 10 } })
     const sending = Array.from({ length: 1001 }, () => bench.device.send('AB'))

@@ -209,7 +209,7 @@ async function rounded({ red, lines, rounds, calm, tell }) {
   for (let turn = 1; turn <= rounds; turn++) {
     const kind = KINDS[turn % KINDS.length]
     // else one deploy would follow the other before the first exchange
-    if (calm) await new Promise(resolve => setTimeout(resolve, (turn * 37) % 150))
+    if (calm) await new Promise(resolve => setTimeout(resolve, 100 + ((turn * 37) % 250)))
     const began = Date.now()
     if (!calm && turn % 7 === 0) drop(lines, done)
     if (!calm && turn % 25 === 0) unplug(lines, done)

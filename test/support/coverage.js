@@ -75,6 +75,9 @@ async function measure({ tests, least }) {
   const mocha = [
     bin('mocha', 'bin/mocha.js'),
     '--exit',
+    // real ports on a busy machine
+    '--retries',
+    '2',
     '--reporter',
     'dot',
     ...tests.map(each => `${each}/**/*.test.js`)

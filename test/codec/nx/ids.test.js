@@ -49,6 +49,10 @@ describe('NX master IDs: the setting', () => {
 
   it('says why', () => {
     const stations = [2, 255]
+    const bare = Object.create(null)
+    assert.throws(() => masterIdList([bare]), {
+      details: { id: 'object', reason: 'it must be a whole number from 0 to 254' }
+    })
     const cases = [
       [[], '', 'give 1 to 255 numbers'],
       [new Array(256).fill(226), new Array(256).fill(226).join(), 'give 1 to 255 numbers'],

@@ -12,6 +12,8 @@ const SILENT = 5
 const MOST_SILENT = 160
 /** A connection on which nothing was heard for so long (ms) is not kept because requests are rare. */
 const LONG = 600000
+/** Nor one on which nothing was ever heard: the serial server may have taken it while it was about to stop. */
+const UNHEARD = 60000
 
 const REASONS = {
   ECONNREFUSED: 'nothing listens there',
@@ -44,6 +46,7 @@ class TcpTransport {
   #open = false
   #ended = false
   #heardAt = 0
+  #heard = false
 
   constructor(settings, clock) {
     this.#settings = settings
@@ -71,6 +74,7 @@ class TcpTransport {
     socket.on('data', bytes => {
       if (this.#ended) return
       this.#heardAt = this.#clock.now()
+      this.#heard = true
       this.#intake.take(bytes)
     })
     socket.on('error', error => this.#lose(REASONS[error['code']] ?? error.message))
@@ -120,7 +124,7 @@ class TcpTransport {
 
   /** @param {{ all: number, known: number }} missing see missing.js */
   check({ all, known }) {
-    const long = all > 0 && this.#clock.now() - this.#heardAt >= LONG
+    const long = all > 0 && this.#clock.now() - this.#heardAt >= (this.#heard ? LONG : UNHEARD)
     if (known < LOST && !isSuspicious(all) && !long) return
     this.#lose(`${all} requests in a row without an answer: the connection is dead`)
   }

@@ -157,16 +157,33 @@ describe('tcp transport', () => {
   })
 
   it('a connection on which nothing was heard for ten minutes ends with the next request that is not answered', async () => {
+    let ahead = 0
+    const clock = fastClock()
+    pool = createPool({ clock: { ...clock, now: () => clock.now() + ahead }, random: () => 0.5 })
+    open()
+    await ask()
+    server.onQuery = () => {}
+    ahead = 300000
+    await silent(1)
+    assert.equal(lease.line.state, 'open')
+    ahead = 600000
+    await silent(1)
+    assert.match(lease.line.reason.message, /2 requests in a row/)
+  })
+
+  it('one on which nothing was ever heard is not kept for longer than a minute', async () => {
     server.onQuery = () => {}
     let ahead = 0
     const clock = fastClock()
     pool = createPool({ clock: { ...clock, now: () => clock.now() + ahead }, random: () => 0.5 })
     open()
     await silent(1)
-    assert.equal(lease.line.state, 'open')
-    ahead = 600000
+    ahead = 40000
     await silent(1)
-    assert.match(lease.line.reason.message, /2 requests in a row/)
+    assert.equal(lease.line.state, 'open')
+    ahead = 60000
+    await silent(1)
+    assert.match(lease.line.reason.message, /3 requests in a row/)
   })
 
   it('sends what was written before it closes', async () => {

@@ -21,7 +21,8 @@ const testsOf = (folder, except = []) =>
     .filter(name => name.endsWith('.test.js') && !except.includes(name))
     .map(name => `${folder}/${name}`)
 
-const LONG = ['leaks.test.js', 'stream-leaks.test.js', 'safety.test.js', 'evidence-docs.test.js']
+const EVIDENCE = ['evidence.test.js', 'evidence-docs.test.js']
+const LONG = ['leaks.test.js', 'stream-leaks.test.js', 'safety.test.js']
 
 /** What is changed, and the tests that have to notice it. Others notice much of it, too, but these are to do it alone, and soon. */
 const PARTS = Object.freeze({
@@ -30,7 +31,8 @@ const PARTS = Object.freeze({
   'lib/codec/modbus': { mutate: 'lib/codec/modbus/*.js', tests: () => testsOf('test/codec/modbus') },
   'lib/codec/melsec': { mutate: 'lib/codec/melsec/*.js', tests: () => testsOf('test/codec/melsec') },
   'lib/codec/incon': { mutate: 'lib/codec/incon/*.js', tests: () => testsOf('test/codec/incon') },
-  'lib/line': { mutate: 'lib/line/*.js', tests: () => testsOf('test/line', LONG) },
+  'lib/line': { mutate: 'lib/line/!(evidence*).js', tests: () => testsOf('test/line', [...LONG, ...EVIDENCE]) },
+  'lib/line/evidence': { mutate: 'lib/line/evidence*.js', tests: () => EVIDENCE.map(name => `test/line/${name}`) },
   'lib/line/transports': { mutate: 'lib/line/transports/*.js', tests: () => testsOf('test/line/transports') }
 })
 const LEAST = 85 // percent

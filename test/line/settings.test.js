@@ -49,6 +49,9 @@ describe('line: settings', () => {
   describe('refuse with the name of the setting', () => {
     refused({ path: '' }, 'path', /empty: a serial line needs the path/)
     refused({ path: 7 }, 'path', /text is needed/)
+    refused({ path: '../port' }, 'path', /does not lead upwards/)
+    refused({ path: '/dev/../etc/passwd' }, 'path', /does not lead upwards/)
+    refused({ path: 'dev\\..' }, 'path', /does not lead upwards/)
     refused({ path: 'a\0b' }, 'path', /cannot be a name/)
     refused({ transport: 'udp' }, 'transport', /known are serial, tcp, simulated/)
     refused({ baudRate: 0 }, 'baudRate', /allowed is 1 to/)

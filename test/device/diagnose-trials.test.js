@@ -54,6 +54,19 @@ describe('diagnose: other speeds, on request', () => {
     await end()
   })
 
+  it('and 8, where 7 is configured', async () => {
+    const made = deviceAt('19200 8 none', {
+      protocol: 'ascii',
+      station: 17,
+      dataBits: 7,
+      parity: 'even',
+      answer: VALUE_ASCII
+    })
+    const { cause, seen } = await made.run({ tryOtherSpeeds: true, trialTime: 60000 })
+    assert.deepEqual([cause.code, seen.framing], ['OTHER_SPEED', '19200 8N1'])
+    await made.end()
+  })
+
   it('NX: the answer to any of its master IDs', async () => {
     const made = bench((bytes, { reply }) => {
       if (made.opened.at(-1).baudRate === 9600) reply(nx(bytes[1], 1, 0xa3, 5, 0))
@@ -160,6 +173,26 @@ describe('diagnose: other modes, on request', () => {
     const { cause } = await run({ tryOtherModes: true })
     assert.deepEqual([cause.code, /to 4\./.test(cause.remedy)], ['WRONG_STEPS', true])
     await end()
+  })
+
+  it('NX: 4-step is configured, and the PLC answers 2-step queries', async () => {
+    const answer = (bytes, { reply }) => bytes[2] === 0x23 && reply(nx(bytes[1], 1, 0xa3, 5, 0))
+    const { run, end } = bench(answer, { protocol: 'nx', station: 1, steps: 4 })
+    const { cause } = await run({ tryOtherModes: true })
+    assert.deepEqual([cause.code, /to 2\./.test(cause.remedy)], ['WRONG_STEPS', true])
+    await end()
+  })
+
+  it('NX: a PLC that is silent to both', async () => {
+    const { run, wire, end } = bench(() => {}, { protocol: 'nx', station: 1 })
+    const { cause, seen } = await run({ tryOtherModes: true })
+    assert.equal(cause.code, 'NO_BYTES')
+    assert.ok(seen.tried.some(({ what }) => what === '4-step method') && wire.sent.length > 2)
+    await end()
+    const over = bench(() => {}, { protocol: 'nx', station: 1 })
+    const short = await over.run({ tryOtherModes: true, trialTime: 1 })
+    assert.ok(short.seen.tried.length < seen.tried.length, 'no longer than it may')
+    await over.end()
   })
 
   it('NX: a lost answer is no fixed master ID', async () => {

@@ -73,6 +73,15 @@ describe('diagnose: all is well', () => {
     await end()
   })
 
+  it('none of the tags can be used: what nearly every device has; a gap is that of the protocol', async () => {
+    const { wire, run, end } = bench((_bytes, { reply }) => reply(VALUE_RTU), { ...RTU, gap: 7.5 })
+    const tags = [{ name: 'a', address: 'hr99999' }, { name: 'b', address: 'hr1', type: 'none' }, { address: 'hr1' }]
+    const { ok, seen } = await run({ tags })
+    assert.deepEqual([ok, seen.item], [true, 'hr0'])
+    assert.deepEqual(wire.hex(), [rtu(0x11, 3, 0, 0, 0, 1).toString('hex')])
+    await end()
+  })
+
   it('the first tag that can be used, whatever is wrong with the others', async () => {
     const { wire, run, end } = bench((_bytes, { reply }) => reply(VALUE_RTU), RTU)
     const tags = [null, { name: '2x', address: 'hr1' }, { name: 'bad', address: '9' }, { name: 'u', address: 'hr1' }]

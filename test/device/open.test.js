@@ -1,9 +1,9 @@
 'use strict'
 
 const assert = require('node:assert/strict')
-const { openC24Port, openChinoRegulator, openInconLink, openNxPlc } = require('../../lib')
+const { createPool, openC24Port, openChinoRegulator, openInconLink, openNxPlc } = require('../../lib')
 const { Subscription } = require('../../lib/device/subscription')
-const { createVirtualClock } = require('../../lib/sim')
+const { createNxLine, createVirtualClock } = require('../../lib/sim')
 
 const STOP = new Error('far enough')
 
@@ -37,6 +37,35 @@ describe('a device on a line of its own', () => {
       assert.equal(asked(open, { ...options, path: 'p', name: 'press' }).owner.name, 'press')
     })
   }
+})
+
+describe('what a connection of its own writes', () => {
+  it('pairs, or entries in their order', async () => {
+    const clock = createVirtualClock()
+    const { wire, plcs } = createNxLine({ clock, baudRate: 38400, quiet: true, stations: [{ station: 1 }] })
+    const pool = createPool({ clock, random: () => 0.5 })
+    const settings = { transport: 'simulated', path: 'sim', wire, baudRate: 38400, echo: 'off', pool, clock }
+    const plc = openNxPlc({ ...settings, station: 1, access: 'write' })
+    const done = []
+    for (const values of [
+      { K0: 5, K1: 6 },
+      [
+        { item: 'K1', value: 7 },
+        { item: 'K1', value: 8 }
+      ]
+    ])
+      done.push((await clock.run(plc.write(values))).outcome)
+    const [result] = await clock.run(plc.read('K0..K1'))
+    assert.deepEqual(
+      [done, result.value],
+      [
+        ['confirmed', 'confirmed'],
+        [5, 8]
+      ]
+    )
+    assert.equal(plcs.length, 1)
+    await clock.run(plc.close())
+  })
 })
 
 describe('polling that ends while it reads', () => {

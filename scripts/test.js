@@ -15,15 +15,18 @@ const path = require('node:path')
 
 const root = path.join(__dirname, '..')
 const JOBS = 2
+/** Long ones go first: the last one would leave a processor idle. */
+const LONG = ['test/simulation/safety.test.js', 'test/consumer/types.test.js', 'test/demo.test.js'].map(path.normalize)
 
-/** @returns {string[]} the test files below a folder, sorted, without those of test/system */
-function testFiles(folder) {
-  const system = path.join('test', 'system') + path.sep
-  return fs
-    .readdirSync(path.join(root, folder), { recursive: true, encoding: 'utf8' })
-    .map(name => path.join(folder, name))
-    .filter(file => file.endsWith('.test.js') && !file.startsWith(system))
+/** @returns {string[]} the test files, long ones first, then sorted; without those of test/system and of what is installed for long runs */
+function testFiles() {
+  const isOurs = file => !file.startsWith(path.join('test', 'system') + path.sep) && !file.includes('node_modules')
+  const files = fs
+    .readdirSync(path.join(root, 'test'), { recursive: true, encoding: 'utf8' })
+    .map(name => path.join('test', name))
+    .filter(file => file.endsWith('.test.js') && isOurs(file))
     .sort()
+  return [...LONG.filter(file => files.includes(file)), ...files.filter(file => !LONG.includes(file))]
 }
 
 function mochaArguments(given) {
@@ -35,7 +38,7 @@ function mochaArguments(given) {
     ...(parallel ? [] : ['--parallel', '--jobs', String(JOBS)]),
     ...(process.env.CI ? ['--forbid-only'] : []),
     ...['--fail-zero', ...given],
-    ...(named ? [] : testFiles('test'))
+    ...(named ? [] : testFiles())
   ]
 }
 

@@ -63,7 +63,7 @@ describe('package.json', () => {
   })
 
   it('start and test set themselves up: npm may skip pre-scripts', () => {
-    for (const name of ['start', 'test', 'simulate', 'bench', 'endurance']) {
+    for (const name of ['start', 'test', 'simulate', 'bench', 'endurance', 'soak']) {
       assert.match(manifest.scripts[name], /^node scripts\/setup\.js && node /, name)
       assert.ok(exists(manifest.scripts[name].split('node ')[2].split(' ')[0]), name)
       assert.equal(manifest.scripts[`pre${name}`], undefined)

@@ -299,3 +299,53 @@ describe('audit of sent messages', () => {
     await b.close()
   })
 })
+
+describe('audit: whatever it is given', () => {
+  const { createAudit } = require('../../lib/device/audit')
+  const told = (outcome, facts, what = 'message') => {
+    const events = []
+    createAudit({ line: { report: event => events.push(event) }, device: 'D' })[what](
+      { outcome: 'failed', attempts: 0, ms: 0.4, items: [], bytes: 0, ...outcome },
+      { since: 7.6, ...facts }
+    )
+    return events[0]
+  }
+
+  it('a value that cannot be looked at, one that is none', () => {
+    const trap = new Proxy([], {
+      get: () => {
+        throw new Error('trap')
+      }
+    })
+    assert.equal(told({}, { value: trap }).text, '(object)')
+    assert.equal(told({}, { value: null }).text, '')
+    assert.equal(told({}, { value: undefined }).text, '')
+    assert.equal(told({}, { value: [1, 'a', true] }).text, '1 a true')
+    assert.equal(told({}, { value: Buffer.from('A\x07B') }).text, 'A·B')
+    assert.equal(told({}, { value: Buffer.alloc(100, 0x41) }).text, `${'A'.repeat(79)}…`)
+  })
+
+  it('who asked, as far as it is known', () => {
+    assert.equal(told({}, {}).by, null)
+    assert.deepEqual(told({}, { by: { node: 'n', message: 5 } }).by, { node: 'n', name: null, message: 5 })
+    assert.deepEqual(told({}, { by: { name: 'x\n' } }).by, { node: null, name: 'x·', message: null })
+  })
+
+  it('why, by an error or by what the outcome says of it; the times are whole', () => {
+    const plain = told({ code: 'X', text: 'why' }, {})
+    assert.deepEqual([plain.code, plain.cause, plain.remedy, plain.since, plain.ms], ['X', 'why', undefined, 8, 0])
+    const { code, cause, remedy } = told({}, { error: new PlcError('PORT_BUSY', { path: 'p' }) })
+    assert.equal(code, 'PORT_BUSY')
+    assert.ok(cause.length > 0 && remedy.length > 0)
+    assert.equal('code' in told({}, {}), false)
+  })
+
+  it('a fault of who listens changes nothing', () => {
+    const line = {
+      report: () => {
+        throw new Error('no')
+      }
+    }
+    createAudit({ line, device: 'D' }).write({ outcome: 'failed', attempts: 0, ms: 0, items: [] }, { since: 0 })
+  })
+})

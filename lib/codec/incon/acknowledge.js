@@ -22,7 +22,7 @@ const END = '\r\n'
 const twoDigits = number => String(number).padStart(2, '0')
 const hex = byte => byte.toString(16).toUpperCase().padStart(2, '0')
 
-/** @param {number} number 0..99 @returns {Buffer} with CR LF; `!07*16` for 7 */
+/** @param {number} number 0..99 @returns {Buffer} with CR LF; `!07*26` for 7 */
 const encodeAck = number => {
   const body = `!${twoDigits(number)}`
   return Buffer.from(`${body}*${hex(xor(Buffer.from(body)))}${END}`)

@@ -163,7 +163,8 @@ describe('MELSEC encodings of two bytes', () => {
     return fresh
   }
   const span = (from, last) => Array.from({ length: last - from + 1 }, (_, n) => from + n)
-  const characterOf = (encoding, pair) => new TextDecoder(encoding).decode(Buffer.from(pair))
+  const decoders = { 'euc-kr': new TextDecoder('euc-kr'), shift_jis: new TextDecoder('shift_jis') }
+  const characterOf = (encoding, pair) => decoders[encoding].decode(Buffer.from(pair))
 
   it('EUC-KR: ASCII, all of hangul and hanja of KS X 1001', () => {
     const fresh = anew()
@@ -171,10 +172,8 @@ describe('MELSEC encodings of two bytes', () => {
       ...span(0xb0, 0xc8).flatMap(lead => span(0xa1, 0xfe).map(trail => [lead, trail])),
       ...span(0xca, 0xfd).flatMap(lead => span(0xa1, 0xfe).map(trail => [lead, trail]))
     ]
-    for (const pair of pairs) {
-      const character = characterOf('euc-kr', pair)
-      assert.deepEqual([...fresh.encodeText(character, 'euc-kr')], pair, character)
-    }
+    const isOther = pair => !fresh.encodeText(characterOf('euc-kr', pair), 'euc-kr').equals(Buffer.from(pair))
+    assert.deepEqual(pairs.filter(isOther), [])
     for (const byte of span(0, 0x7f)) {
       assert.deepEqual([...fresh.encodeText(String.fromCharCode(byte), 'euc-kr')], [byte])
     }
@@ -190,10 +189,8 @@ describe('MELSEC encodings of two bytes', () => {
       ...span(0xe0, 0xe9).flatMap(lead => trails.map(trail => [lead, trail])),
       ...span(0xfb, 0xfb).flatMap(lead => span(0x80, 0xfc).map(trail => [lead, trail]))
     ]
-    for (const pair of pairs) {
-      const character = characterOf('shift_jis', pair)
-      assert.deepEqual([...fresh.encodeText(character, 'shift_jis')], pair, character)
-    }
+    const isOther = pair => !fresh.encodeText(characterOf('shift_jis', pair), 'shift_jis').equals(Buffer.from(pair))
+    assert.deepEqual(pairs.filter(isOther), [])
     for (const byte of [...span(0, 0x7f), ...span(0xa1, 0xdf)]) {
       assert.deepEqual([...fresh.encodeText(characterOf('shift_jis', [byte]), 'shift_jis')], [byte])
     }

@@ -83,7 +83,7 @@ describe('MELSEC messages, received', () => {
 
   it('the rest of it ends where a message ends, however long it is', () => {
     const first = text('START:')
-    for (let length = 5; length < 400; length++) {
+    for (let length = 5; length < 160; length++) {
       const junk = '1'.repeat(length)
       assert.deepEqual(cut(`${junk}\r\nOK\r\n`, { most: 4 }), ['tooLong:1111', 'OK'], `${length}`)
       const options = { most: 4, first }

@@ -111,7 +111,7 @@ const startReading = (RED, session, { named = false } = {}) => {
   const chosen = choice({ device, fixed, named })
 
   const show = results => {
-    if (!session.closed) display.update(summary(results))
+    if (!session.closed) display.update({ ...summary(results), advice: device.advice })
   }
   const ask = async (msg, send) => {
     const { valid, complete } = chosen(msg)

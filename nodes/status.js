@@ -10,6 +10,7 @@
  * @property {number} [count] values of the last read
  * @property {number} [bad] how many of them are bad
  * @property {string} [code] of the last failure
+ * @property {number | null} [advice] a timeout that would do for the station, ms; answers come too late
  * @property {string} [outcome] of the last write
  * @property {number} [received] messages since the start
  * @property {boolean} [complete] whether the last one was
@@ -88,9 +89,10 @@ const lineStatus = ({ state, reason }) => {
 }
 
 /** @param {State} state */
-const readStatus = ({ count = 0, bad = 0, code }) => {
+const readStatus = ({ count = 0, bad = 0, code, advice }) => {
   if (bad === 0) return show('green', 'dot', count === 1 ? 'value' : 'values', { count })
   if (bad < count) return show('yellow', 'ring', 'someBad', { bad, count })
+  if (code === 'TIMEOUT' && advice) return show('red', 'ring', 'raiseTimeout', { ms: advice })
   return show('red', 'ring', causeOf(code, 'error'))
 }
 

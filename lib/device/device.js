@@ -64,6 +64,11 @@ class Device {
     return this.#health.now
   }
 
+  /** A timeout that would do for this station, ms; null: no answer came late, or nearly so. */
+  get advice() {
+    return this.#health.advice
+  }
+
   /** Who it is on its line, for `mixedConflict`: `{ protocol, station, masterIds, name }`. */
   get member() {
     const { protocol, station, masterIds = [], name } = this.#settings

@@ -1,5 +1,6 @@
 'use strict'
 const { PlcError } = require('../error')
+const { timeoutFor } = require('../line')
 
 /** What is said of a station's health: the error of what is not asked, and the events. Pure. */
 
@@ -31,9 +32,9 @@ const backEvent = ({ silentAt }, { station, now }) => ({
 })
 
 const slowEvent = (p99, { station, timeout }) => ({
-  ...{ event: 'slow', station, p99, timeout },
+  ...{ event: 'slow', station, p99, timeout, advice: timeoutFor(p99) },
   cause: `Station ${station} takes up to ${p99} ms to answer; its timeout is ${timeout} ms`,
-  remedy: `Raise the timeout to ${Math.ceil((p99 * 1.5) / 100) * 100} ms.`
+  remedy: `Raise the timeout to ${timeoutFor(p99)} ms.`
 })
 
 module.exports = { backEvent, demotedError, demotedEvent, slowEvent }

@@ -1,6 +1,6 @@
 'use strict'
 const { PlcError } = require('../error')
-const { PRIORITY, realClock } = require('../line')
+const { PRIORITY, realClock, timeoutFor } = require('../line')
 const { backEvent, demotedError, demotedEvent, slowEvent } = require('./health-texts')
 const { demote, healthOf, noteAlive, noteGood, noteSilence, noteWanted, pardon, sampleOf } = require('./health-record')
 
@@ -54,6 +54,8 @@ class Health {
     this.#memory = lease.line.memory(settings.station)
     this.#health = healthOf(this.#memory)
     this.#lineState = lease.line.state
+    // it was followed
+    if (this.#memory.advice <= settings.timeout) this.#memory.advice = null
     this.#pardon()
     lease.on('state', this.#onState)
     lease.on('event', this.#onEvent)
@@ -64,6 +66,11 @@ class Health {
     const { state, since, probeAt } = this.#health
     const probe = state === 'demoted' ? this.#wallOf(probeAt) : null
     return { state, since, probe }
+  }
+
+  /** A timeout that would do, ms; null: no answer came late, or nearly so. */
+  get advice() {
+    return this.#memory.advice ?? null
   }
 
   /** @param {{ talk: any, wake: () => void }} device wake: called when the station may answer again */
@@ -209,6 +216,7 @@ class Health {
     const p99 = Math.round(waits.p99)
     if (p99 <= SLOW * timeout) return
     this.#health.slowAt = now
+    this.#memory.advice = Math.max(this.#memory.advice ?? 0, timeoutFor(p99))
     this.#report(() => slowEvent(p99, { station, timeout }))
   }
 

@@ -7,6 +7,7 @@ const { listPorts } = require('./ports')
 const { PRIORITY } = require('./queue')
 const { SETTINGS, lineSettings, wireKey } = require('./settings')
 const timing = require('./timing')
+const { timeoutFor } = require('./waits')
 
 module.exports = {
   PRIORITY,
@@ -16,6 +17,7 @@ module.exports = {
   lineSettings,
   listPorts,
   realClock,
+  timeoutFor,
   wireKey,
   ...timing
 }

@@ -13,6 +13,7 @@ const { Silence } = require('./silence')
 const { Stream } = require('./stream')
 const { lineTimes } = require('./timing')
 const { Use } = require('./use')
+const { timeoutFor } = require('./waits')
 
 /** A frame that is being sent is never cut; nor is closing held up longer than this, ms. */
 const MOST_SENDING = 1000
@@ -279,8 +280,11 @@ class Line extends EventEmitter {
 
   #late({ station, lateness, timeout, bound }) {
     const ms = Math.round(lateness)
-    const remedy = `Station ${station} answers ${ms} ms after its ${timeout} ms timeout: raise the timeout.`
-    this.report({ event: 'late', station, lateness: ms, timeout, bound, remedy })
+    const memory = this.memory(station)
+    memory.advice = Math.max(memory.advice ?? 0, timeoutFor(timeout + ms))
+    const cause = `Station ${station} answers ${ms} ms after its timeout of ${timeout} ms`
+    const remedy = `Raise the timeout to ${memory.advice} ms.`
+    this.report({ event: 'late', station, lateness: ms, timeout, bound, advice: memory.advice, cause, remedy })
   }
 
   /** Nothing is sent into a flood; the first silence ends it. */

@@ -59,20 +59,21 @@ class Stats {
   }
 
   /**
-   * A copy: `{ queries, …, busy, stations: { [station]: { queries, …, latency: { min, mean, max, p99 } | null, health, since } } }`; health and
-   * since (epoch ms) are what the devices left in the station's memory.
+   * A copy: `{ queries, …, busy, stations: { [station]: { queries, …, latency: { min, mean, max, p99 } | null, health, since, advice } } }`;
+   * health and since (epoch ms) are what the devices left in the station's memory; advice: a timeout that would do, ms, or null.
    */
   snapshot() {
     const stations = {}
     for (const [station, { counts, min, max, sum }] of this.#stations) {
-      const { waits, health } = this.#memories.get(station) ?? {}
+      const { waits, health, advice } = this.#memories.get(station) ?? {}
       const p99 = waits?.p99 ?? null
       const latency = counts.answers > 0 ? { min, mean: sum / counts.answers, max, p99 } : null
       stations[String(station)] = {
         ...counts,
         latency,
         health: health?.state ?? 'online',
-        since: health?.since ?? null
+        since: health?.since ?? null,
+        advice: advice ?? null
       }
     }
     return { ...this.#line, stations }

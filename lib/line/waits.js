@@ -26,4 +26,7 @@ class Waits {
   }
 }
 
-module.exports = { Waits }
+/** A timeout that would do for a station that took so long. @param {number} ms @returns {number} ms, in hundreds */
+const timeoutFor = ms => Math.ceil((ms * 1.5) / 100) * 100
+
+module.exports = { Waits, timeoutFor }

@@ -475,9 +475,15 @@ describe('health of a station', () => {
     assert.deepEqual([event.station, event.timeout], [1, 200])
     assert.ok(event.p99 >= 170 && event.p99 < 190)
     assert.match(event.remedy, /Raise the timeout to 300 ms/)
+    assert.deepEqual([event.advice, b.stats(1).advice, b.device.advice], [300, 300, 300])
     await b.clock.advance(3600000)
     for (let n = 0; n < 60; n++) await b.read()
     assert.equal(b.heard('slow').length, 2)
+    // a deploy that follows the advice ends it
+    b.device.close()
+    const device = b.make(b.lease, { station: 1, timeout: 300 })
+    assert.deepEqual([b.stats(1).advice, device.advice], [null, null])
+    device.close()
   })
 
   it('slow: not for a long answer that begins in time', async () => {

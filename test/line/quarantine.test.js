@@ -128,10 +128,12 @@ describe('line: quarantine', () => {
     bench.lease.on('event', event => events.push(event))
     await bench.run(failure(ask(bench, 1)))
     await bench.run(ask(bench, 1))
-    const [{ since, remedy, bound, ...event }] = events
-    assert.deepEqual(event, { event: 'late', station: 1, lateness: 900, timeout: 200 })
+    const [{ since, cause, remedy, bound, ...event }] = events
+    assert.deepEqual(event, { event: 'late', station: 1, lateness: 900, timeout: 200, advice: 1700 })
     near(bound, 1350, 'bound')
-    assert.match(remedy, /900 ms after its 200 ms timeout: raise the timeout/)
+    assert.equal(cause, 'Station 1 answers 900 ms after its timeout of 200 ms')
+    assert.equal(remedy, 'Raise the timeout to 1700 ms.')
+    assert.equal(bench.lease.line.stats().stations[1].advice, 1700)
     assert.ok(since > 0)
     near(
       bench.wire.sent[1].at - (bench.wire.sent[0].at + 4 / 1.92 + 1100),

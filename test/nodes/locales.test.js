@@ -51,6 +51,7 @@ const statusKeys = () => {
     { phase: 'read', count: 1 },
     { phase: 'read', count: 3 },
     { phase: 'read', count: 3, bad: 1 },
+    { phase: 'read', count: 3, bad: 3, code: 'TIMEOUT', advice: 1700 },
     ...codes.flatMap(code => [
       { fault: { code } },
       { phase: 'read', count: 2, bad: 2, code },

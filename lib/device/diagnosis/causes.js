@@ -1,5 +1,6 @@
 'use strict'
 const { CODES, isRefusal } = require('../../error')
+const { timeoutFor } = require('../../line')
 
 /**
  * Likely causes, from what was seen. Pure. What is no row here is an error of the line or of the station by its own code (docs/errors.md).
@@ -201,7 +202,7 @@ function fromLoss(facts) {
   const { stray, echo, answers } = evidence
   if (late) {
     const lateness = Math.round(late.lateness)
-    const advice = Math.ceil(((facts.timeout + lateness) * 1.5) / 100) * 100
+    const advice = timeoutFor(facts.timeout + lateness)
     return cause('LATE', { ...facts, lateness, advice })
   }
   const spoken = fromFrames(facts)

@@ -55,4 +55,4 @@ function startVersions(rows, { every, most }) {
   }
 }
 
-module.exports = { BLOCK, createHistory, startVersions, wordsOf }
+module.exports = { BLOCK, startVersions, wordsOf }

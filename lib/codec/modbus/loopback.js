@@ -1,5 +1,5 @@
 'use strict'
-const { asciiLength, fromAscii, toAscii } = require('./ascii')
+const { fromAscii, toAscii } = require('./ascii')
 const { EXCEPTION_LENGTH } = require('./answer')
 const { EXCEPTION, LOOPBACK } = require('./functions')
 const { frameTo } = require('./match')
@@ -39,7 +39,4 @@ function exceptionIn(frame, station) {
   return is && crcFits(frame, 0, EXCEPTION_LENGTH) ? frame[2] : 0
 }
 
-/** Characters, or bytes, of the query and of its answer. @param {'rtu'|'ascii'} protocol @returns {number} */
-const loopbackLength = protocol => (protocol === 'ascii' ? asciiLength(LENGTH) : LENGTH)
-
-module.exports = { loopback, loopbackLength }
+module.exports = { loopback }

@@ -114,7 +114,7 @@ async function segment({ seed, protocol, peer, exchanges, stations: rows, pause,
   const { echo, collisions, baudRate, faults: rates } = line
   const { wire, stations } = createLine({
     ...{ clock, echo, collisions, baudRate, rates, seed },
-    chunk: () => random.pick([1, 3, 16, 64]),
+    chunk: () => Math.min(random.pick([1, 3, 16, 64]), Math.floor((16 * baudRate) / 10000)),
     stations: rows.map(row => simulated(row, writes))
   })
   const heard = () => stations.reduce((sum, { counts }) => sum + counts.queries, 0)

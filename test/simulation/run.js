@@ -77,6 +77,8 @@ async function safetyRun(options) {
   })
 }
 
+const ADAPTER = 16 // ms: an adapter gives what it has at the latest then (docs/wiring.md, latency timer)
+
 function createSystem(options) {
   const { seed, stations: rows = NX, faults = FAULTS, collisions = true, echo = false, baudRate = 38400 } = options
   const { unplugs = 0.001, uniform = false, polls = false, pause = 20, device, wire } = options
@@ -90,7 +92,7 @@ function createSystem(options) {
     seed: random.integer(0, 2 ** 32 - 1),
     baudRate,
     rates: faults,
-    chunk: () => random.pick([1, 3, 16, 64]),
+    chunk: () => Math.min(random.pick([1, 3, 16, 64]), Math.max(1, Math.floor((ADAPTER * baudRate) / 10000))),
     stations: rows.map(row => simulated(row, writes))
   })
   const pool = createPool({ clock, random: random.next })

@@ -248,7 +248,8 @@ describe('nx-read', () => {
   })
 
   it('late answers: the advice is given once, to the PLC that it concerns', async () => {
-    const quick = { timeout: '30' }
+    // where a busy process takes its time a late answer is not always seen, and the station would be demoted
+    const quick = { timeout: '30', demoteAfter: '0' }
     await load([
       lineNode(wire, { latenessBound: '60' }),
       plcNode(quick),
@@ -265,10 +266,10 @@ describe('nx-read', () => {
     await until(() => warnings.plc.length > 0 && warnings.plc2.length > 0, 'the advice')
     const told = () => helper.log().args.filter(([{ msg }]) => /Raise the timeout/.test(msg)).length
     await until(() => wire.faults.counts.late > 8, 'more late answers')
-    assert.match(warnings.plc[0], /Station 1 answers \d+ ms after its timeout of 30 ms\. Raise the timeout to \d00 ms/)
+    assert.match(warnings.plc[0], /Station 1 answers \d+ ms after its timeout of 30 ms\. Raise the timeout to \d+00 ms/)
     assert.match(warnings.plc2[0], /Station 2 answers/)
     assert.equal(told(), 2)
-    await until(() => seen.some(({ text }) => /^raise timeout: \d00$/.test(text)), 'the status, a second later')
+    await until(() => seen.some(({ text }) => /^raise timeout: \d+00$/.test(text)), 'the status, a second later')
   })
 
   it('a simulated line marks its messages and its status', async () => {

@@ -216,6 +216,12 @@ describe('chino-regulator, reading', () => {
     })
   }
 
+  it('answers come too late: the status says which timeout would do', () => {
+    const late = statusOf({ phase: 'read', count: 2, bad: 2, code: 'TIMEOUT', advice: 1700 })
+    assert.deepEqual([late.fill, late.key, late.values], ['red', 'raiseTimeout', { ms: 1700 }])
+    assert.equal(statusOf({ phase: 'read', count: 2, bad: 2, code: 'CRC_ERROR', advice: 1700 }).key, 'damaged')
+  })
+
   it('no answer: TIMEOUT; as envelope a message that says bad', async () => {
     wire.wire.setOff(1, true)
     const { out, caught } = await ask({ items: ['400108'] }, { msg: { own: 5 } })

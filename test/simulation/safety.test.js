@@ -42,7 +42,7 @@ describe('safety: any faults, up to 30 % of all answers', function () {
   ]
   for (const [name, options] of cases) {
     it(String(name), async () => {
-      const report = await safetyRun({ exchanges: 1600, ...Object(options) })
+      const report = await safetyRun({ exchanges: 1600, unplugs: 0.003, ...Object(options) })
       assertSafe(report)
       assertBusy(report, 1600)
       assertRecovered(report)

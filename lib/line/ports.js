@@ -69,7 +69,7 @@ async function listPorts({ list = () => require('serialport').SerialPort.list(),
   const told = await quiet(list)
   const found = new Map()
   for (const port of [...told, ...(told.length === 0 ? await devices(files) : [])]) found.set(port.path, port)
-  for (const { device } of links) if (!found.has(device)) found.set(device, { path: device })
+  for (const { device } of links) found.set(device, { path: device })
   const rows = [...found.values()].map(port => {
     const link = links.find(({ device }) => device === port.path)
     return { ...describe(port, link), stable: Boolean(link), real: link || isReal(port) }

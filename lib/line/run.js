@@ -64,7 +64,6 @@ class Run {
   /** Ends the wait of one lease. */
   leave(lease, error) {
     const gone = this.#waiters.filter(w => w.lease === lease)
-    if (gone.length === 0) return
     this.#waiters = this.#waiters.filter(w => w.lease !== lease)
     for (const { reject } of gone) reject(copyOf(error, { sent: this.sent }))
   }

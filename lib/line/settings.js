@@ -40,8 +40,8 @@ const bad = (setting, value, reason) =>
   new PlcError('BAD_SETTING', { setting, value: value === '' ? 'empty' : value, reason })
 
 const readNumber = (name, rule, raw) => {
-  const value = typeof raw === 'string' ? Number(raw.trim()) : raw
-  if (typeof value !== 'number' || !Number.isFinite(value)) throw bad(name, raw, 'a number is needed')
+  const value = typeof raw === 'string' ? Number(raw) : raw
+  if (!Number.isFinite(value)) throw bad(name, raw, 'a number is needed')
   if (value < rule.least || value > rule.most) throw bad(name, raw, `allowed is ${rule.least} to ${rule.most}`)
   if (rule.whole && !Number.isInteger(value)) throw bad(name, raw, 'a whole number is needed')
   return value
@@ -61,7 +61,7 @@ const readText = (name, raw) => {
 }
 
 const read = (name, rule, raw) => {
-  if (raw === undefined || raw === null || (raw === '' && rule.kind !== 'text')) return rule.fallback
+  if (raw === undefined || raw === null || raw === '') return rule.fallback
   if (rule.kind === 'number') return readNumber(name, rule, raw)
   return rule.kind === 'choice' ? readChoice(name, rule, raw) : readText(name, raw)
 }

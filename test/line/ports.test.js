@@ -39,12 +39,12 @@ describe('line: the list of ports', () => {
       list: withoutUdev,
       files: files({
         links: { [FTDI]: '/dev/ttyUSB0' },
-        dev: ['ttyUSB0', 'ttyUSB1', 'ttyACM0', 'ttyAMA0', 'tty1', 'null']
+        dev: ['ttyUSB0', 'ttyUSB1', 'ttyUSB10', 'ttyACM0', 'ttyAMA0', 'tty1', 'null', 'xttyUSB2', 'ttyUSB3.lock']
       })
     })
     assert.deepEqual(
       found.map(({ label }) => label),
-      ['FTDI USB-RS485 Cable (ttyUSB0)', 'ttyACM0', 'ttyAMA0', 'ttyUSB1']
+      ['FTDI USB-RS485 Cable (ttyUSB0)', 'ttyACM0', 'ttyAMA0', 'ttyUSB1', 'ttyUSB10']
     )
     assert.equal(found[3].path, '/dev/ttyUSB1')
   })
@@ -54,6 +54,38 @@ describe('line: the list of ports', () => {
     assert.deepEqual(await listPorts({ list, files: files() }), [
       { path: '/dev/ttyUSB0', device: '/dev/ttyUSB0', label: 'Moxa Technologies UPort 1150 (ttyUSB0)' }
     ])
+  })
+
+  it('reads the name of an adapter out of its stable name', async () => {
+    const names = {
+      'usb-1a86_USB_Single_Serial_54D2042265-if00': '1a86 USB Single Serial',
+      'usb-Quad_Adapter-if02-port10': 'Quad Adapter',
+      'usb-Dual-if1-Adapter-if00-port0': 'Dual-if1-Adapter',
+      'Adapter_usb-C_Cable': 'Adapter usb-C Cable',
+      'usb-ABCDEF12-if00': 'ABCDEF12',
+      'usb-Adapter_V2-RS485X-if00': 'Adapter V2-RS485X',
+      'usb-Adapter_RS485X-2-if00': 'Adapter RS485X-2'
+    }
+    for (const [id, name] of Object.entries(names)) {
+      const [{ label }] = await listPorts({ list: withoutUdev, files: files({ links: { [id]: '/dev/ttyUSB0' } }) })
+      assert.equal(label, `${name} (ttyUSB0)`)
+    }
+  })
+
+  it('of two stable names the first is taken, whatever their order on the disk', async () => {
+    const links = { [MOXA]: '/dev/ttyUSB0', [FTDI]: '/dev/ttyUSB0' }
+    const found = await listPorts({ list: async () => [{ path: '/dev/ttyUSB0' }], files: files({ links }) })
+    assert.deepEqual(found, [
+      { path: `/dev/serial/by-id/${FTDI}`, device: '/dev/ttyUSB0', label: 'FTDI USB-RS485 Cable (ttyUSB0)' }
+    ])
+  })
+
+  it('device files are looked at only where nobody tells of ports', async () => {
+    const found = await listPorts({ list: async () => [{ path: '/dev/ttyUSB0' }], files: files({ dev: ['ttyUSB1'] }) })
+    assert.deepEqual(
+      found.map(({ device }) => device),
+      ['/dev/ttyUSB0']
+    )
   })
 
   it('has also what only a stable name leads to, and not what it leads nowhere', async () => {
@@ -87,10 +119,10 @@ describe('line: the list of ports', () => {
   })
 
   it('knows Windows names', async () => {
-    const list = async () => [{ path: 'COM10' }, { path: 'COM3', manufacturer: 'FTDI' }]
+    const list = async () => [{ path: '\\\\.\\COM10' }, { path: 'COM3', manufacturer: 'FTDI' }]
     assert.deepEqual(
       (await listPorts({ list, files: files() })).map(({ path, label }) => `${path} ${label}`),
-      ['COM10 COM10', 'COM3 FTDI (COM3)']
+      ['\\\\.\\COM10 COM10', 'COM3 FTDI (COM3)']
     )
   })
 

@@ -6,6 +6,7 @@ const assert = require('node:assert/strict')
 const { createPool } = require('../../lib')
 const { createVirtualClock } = require('../../lib/sim')
 const { answerTo } = require('../../lib/codec/modbus/match')
+const { Repeats } = require('../../lib/line/repeats')
 
 const hex = text => Buffer.from(text.replaceAll(' ', ''), 'hex')
 const CHARACTER = 10 / 19.2 // ms at 19200 bit/s
@@ -83,5 +84,61 @@ describe('an answer that comes twice', () => {
     const { run, line } = createSystem((n, bytes) => [n === 0 ? inTime(n, bytes) : AT_ONCE])
     assert.deepEqual(await run([FIRST, NEXT, NEXT, FIRST]), valuesOf([FIRST, NEXT, NEXT, FIRST]))
     assert.equal(line.stats().timeouts, 0)
+  })
+})
+
+describe('what is known of answers that were taken', () => {
+  const A = hex('0b 03 02 cc 51 b4 b9')
+  const B = hex('0b 03 02 00 00 20 45')
+  const LENGTH = 8
+  // at 0.97 of 100 ms a character, a query of 8 and an answer of 7
+  const SOONEST = 15 * 97
+  const at = now => ({ length: LENGTH, sentAt: 0, now })
+  const created = () => new Repeats(100)
+  const paced = (...frames) => {
+    const repeats = created()
+    for (const frame of frames) repeats.answered(frame, at(SOONEST))
+    return repeats
+  }
+  const early = at(SOONEST - 1)
+
+  it('an early one is old, if it was taken before, at any time, and answers take the time of the wire', () => {
+    assert.equal(created().isOld(A, early), false)
+    for (const frame of [A, B]) assert.equal(paced(A, B).isOld(frame, early), true)
+    assert.equal(paced(A).isOld(B, early), false)
+    assert.equal(paced(A).isOld(A, at(SOONEST)), false, 'just in time')
+  })
+
+  it('the last 32 are known', () => {
+    const frames = Array.from({ length: 33 }, (_, n) => Buffer.from([n]))
+    const repeats = paced(...frames)
+    const late = { length: LENGTH, sentAt: 0, now: 8 * 97 }
+    assert.deepEqual(
+      [0, 1, 32].map(n => repeats.isOld(frames[n], late)),
+      [false, true, true]
+    )
+    assert.equal(paced(...frames.slice(0, 32)).isOld(frames[0], late), true)
+  })
+
+  it('two steps that fail after one was dropped tell of a faster wire; others do not', () => {
+    const repeats = paced(A)
+    for (let n = 0; n < 3; n++) repeats.failed()
+    assert.equal(repeats.isOld(A, early), true)
+    repeats.failed()
+    repeats.sent()
+    for (let n = 0; n < 3; n++) repeats.failed()
+    assert.equal(repeats.isOld(A, early), true)
+    repeats.failed()
+    assert.equal(repeats.isOld(A, early), false)
+  })
+
+  it('another opening: nothing is known', () => {
+    const repeats = paced(A)
+    repeats.reset()
+    repeats.answered(B, at(SOONEST))
+    assert.deepEqual([repeats.isOld(A, early), repeats.isOld(B, early)], [false, true])
+    repeats.reset()
+    repeats.answered(A, early)
+    assert.equal(repeats.isOld(A, early), false, 'this one has no pace')
   })
 })

@@ -1,6 +1,7 @@
 'use strict'
 
 const assert = require('node:assert/strict')
+const { difference, lineName } = require('../../lib/line/settings')
 const { lineSettings, wireKey, bitsPerCharacter, gapTime, characterTime, slackTime } = require('../../lib/line')
 
 const refused = (raw, setting, text) => {
@@ -14,12 +15,33 @@ const refused = (raw, setting, text) => {
 
 describe('line: settings', () => {
   it('have the defaults of the contract', () => {
-    const settings = lineSettings({ path: '/dev/ttyUSB0' })
-    const { transport, baudRate, dataBits, parity, stopBits, gap, echo, queueLimit, writesBeforePoll } = settings
-    assert.deepEqual(
-      [transport, baudRate, dataBits, parity, stopBits, gap, echo, queueLimit, writesBeforePoll],
-      ['serial', 19200, 8, 'none', 1, 0, 'auto', 1000, 4]
-    )
+    const settings = lineSettings({ path: '/dev/ttyUSB0', wire: 'only of a simulated line' })
+    assert.deepEqual(settings, {
+      transport: 'serial',
+      name: '',
+      path: '/dev/ttyUSB0',
+      host: '',
+      port: 0,
+      baudRate: 19200,
+      dataBits: 8,
+      parity: 'none',
+      stopBits: 1,
+      flowControl: 'none',
+      dtr: 'unchanged',
+      rts: 'unchanged',
+      openDelay: 0,
+      gap: 0,
+      echo: 'auto',
+      slack: 0,
+      latenessBound: 0,
+      openGrace: 2000,
+      connectTimeout: 5000,
+      keepAlive: 10000,
+      writeTimeout: 1000,
+      jamTime: 1000,
+      queueLimit: 1000,
+      writesBeforePoll: 4
+    })
     assert.ok(Object.isFrozen(settings))
   })
 
@@ -34,6 +56,30 @@ describe('line: settings', () => {
     })
     const { path, baudRate, dataBits, stopBits, gap, port } = settings
     assert.deepEqual([path, baudRate, dataBits, stopBits, gap, port], ['/dev/a', 9600, 7, 2, 0, 0])
+  })
+
+  it('what is empty is the default; the least, the most and all that is known is allowed', () => {
+    const empty = lineSettings({ path: '/dev/a', name: '', baudRate: '', parity: '', queueLimit: null })
+    assert.deepEqual([empty.name, empty.baudRate, empty.parity, empty.queueLimit], ['', 19200, 'none', 1000])
+    const values = {
+      baudRate: [1, 10000000],
+      parity: ['even', 'odd', 'none'],
+      flowControl: ['none', 'rtscts', 'xonxoff'],
+      dtr: ['unchanged', 'on', 'off'],
+      rts: ['unchanged', 'on', 'off']
+    }
+    for (const [name, list] of Object.entries(values)) {
+      for (const value of list) assert.equal(lineSettings({ path: '/dev/a', [name]: ` ${value} ` })[name], value)
+    }
+  })
+
+  it('name the line by its name or its wire, and the first setting in which two of one wire differ', () => {
+    const one = lineSettings({ path: '/dev/a', baudRate: 9600 })
+    assert.deepEqual([lineName(one), lineName(lineSettings({ path: '/dev/a', name: 'mill' }))], ['/dev/a', 'mill'])
+    assert.equal(difference(one, lineSettings({ path: '/dev/a', baudRate: 9600, name: 'mill' })), '')
+    assert.equal(difference(one, lineSettings({ path: '/dev/a' })), 'baudRate 9600 and 19200')
+    const on = wire => lineSettings({ transport: 'simulated', wire })
+    assert.equal(difference(on({ connect() {} }), on({ connect() {} })), 'two different wires')
   })
 
   it('leave out what they do not know', () => {
@@ -52,11 +98,12 @@ describe('line: settings', () => {
     refused({ path: '../port' }, 'path', /does not lead upwards/)
     refused({ path: '/dev/../etc/passwd' }, 'path', /does not lead upwards/)
     refused({ path: 'dev\\..' }, 'path', /does not lead upwards/)
-    refused({ path: 'a\0b' }, 'path', /cannot be a name/)
+    refused({ path: 'a\0b' }, 'path', /with a zero byte: it cannot be a name/)
     refused({ transport: 'udp' }, 'transport', /known are serial, tcp, simulated/)
     refused({ baudRate: 0 }, 'baudRate', /allowed is 1 to/)
-    refused({ baudRate: 'fast' }, 'baudRate', /a number is needed/)
+    refused({ baudRate: 'fast' }, 'baudRate', /fast: a number is needed/)
     refused({ baudRate: 9600.5 }, 'baudRate', /whole number/)
+    for (const name of ['port', 'queueLimit', 'writesBeforePoll']) refused({ [name]: 1.5 }, name, /whole number/)
     refused({ baudRate: Infinity }, 'baudRate', /a number is needed/)
     refused({ baudRate: {} }, 'baudRate', /a number is needed/)
     refused({ dataBits: 6 }, 'dataBits', /known are 8, 7/)
@@ -71,7 +118,10 @@ describe('line: settings', () => {
   })
 
   it('that are none at all are refused', () => {
-    for (const raw of [null, 'x', 7]) assert.throws(() => lineSettings(raw), { code: 'BAD_SETTING' })
+    for (const raw of [null, 'x', 7]) {
+      const refusal = { code: 'BAD_SETTING', message: /the line.*: an object of settings is needed/ }
+      assert.throws(() => lineSettings(raw), refusal)
+    }
   })
 })
 

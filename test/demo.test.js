@@ -15,7 +15,9 @@ describe('demo flow', () => {
   const flow = require('../examples/demo/flow.json')
 
   it('writers say how many outputs they have, texts bring their units', () => {
-    for (const node of flow.filter(({ type }) => /^(nx-write|chino-regulator|melsec-c24|incon-link|plc-monitor)$/.test(type)))
+    for (const node of flow.filter(({ type }) =>
+      /^(nx-write|chino-regulator|melsec-c24|incon-link|plc-monitor)$/.test(type)
+    ))
       assert.equal(node.outputs, node.wires.length, node.name)
     // the dashboard ignores any other format
     for (const node of flow.filter(({ type }) => type === 'ui-text'))

@@ -56,6 +56,8 @@ const createIncon = ({ checked, acknowledge }, { clock }) =>
     clock,
     checked,
     acknowledge,
+    // it begins at the same moment as the node
+    listens: 300,
     events: EVENTS,
     every: EVERY,
     // the name of a program is selected, everything else is shown on its screen

@@ -19,7 +19,8 @@ const END = Buffer.from('\r\n')
  * - `events` texts that it sends in turn, one `every` ms (0: none)
  * - `checked` its programs speak the checked format (codec/incon/check.js)
  * - `acknowledge` its programs speak the acknowledged format (codec/incon/acknowledge.js); `ackTimeout` ms until the acknowledgement (1000; a random half of
- *   it comes on top), `attempts` of a line (5), `random` for these times
+ *   it comes on top), `attempts` of a line (5), `random` for these times, `listens` ms after its start before it says so (0; two that start at the
+ *   same moment and speak at once are not understood)
  * - `keep` so many of the latest messages and lines are kept (1000)
  * - `onMessage(message)` for each message that the PLC's program takes
  *
@@ -52,10 +53,10 @@ function createInconController(settings) {
 
 /** The program starts; one that acknowledges says so. */
 function begin(incon) {
-  const { acknowledge, clock, random, ackTimeout, attempts, counts } = incon
+  const { acknowledge, clock, random, ackTimeout, listens, attempts, counts } = incon
   if (!acknowledge) return
   const settled = outcome => keepIn(incon, incon.outcomes, outcome)
-  incon.program = createInconProgram({ clock, random, ackTimeout, attempts, counts, settled })
+  incon.program = createInconProgram({ clock, random, ackTimeout, listens, attempts, counts, settled })
   wake(incon)
 }
 

@@ -12,7 +12,8 @@ const TURN = 100
  * What the program of a simulated controller does where lines are acknowledged (codec/incon/acknowledge.js): one line at a time, repeated until it is
  * acknowledged. It only says what is to be put into SerialLinkSend at a scan, and is told what was taken out of SerialLinkRecv.
  *
- * @param {{ clock: any, random: { next: () => number }, ackTimeout: number, attempts: number, counts: any, settled: (outcome: any) => void }} parts
+ * @param {{ clock: any, random: { next: () => number }, ackTimeout: number, listens: number, attempts: number, counts: any,
+ *   settled: (outcome: any) => void }} parts
  */
 function createInconProgram(parts) {
   const program = {
@@ -98,7 +99,9 @@ function next(program) {
   }
   program.flight ??= newFlight(program)
   const { flight } = program
-  if (!flight || clock.now() < flight.at) return null
+  // who has just spoken listens now
+  const answers = isFirst && acks.length > 0
+  if (!flight || (clock.now() < flight.at && !answers)) return null
   if (flight.attempts >= attempts) {
     settle(program, 'unknown')
     return next(program)
@@ -111,12 +114,13 @@ function next(program) {
 }
 
 function newFlight(program) {
-  const { started, greeting, texts, random } = program
+  const { started, greeting, texts, random, clock, listens } = program
   if (started && texts.length === 0) return null
   if (!started && !greeting && texts.length === 0) return null
   const number = started ? program.number : START
   const text = started ? texts[0] : Buffer.from(Math.floor(random.next() * 1e6).toString(36))
-  return { number, bytes: Buffer.concat([seal(text, number), END]), attempts: 0, at: 0 }
+  const at = started ? 0 : clock.now() + listens
+  return { number, bytes: Buffer.concat([seal(text, number), END]), attempts: 0, at }
 }
 
 /** The last byte of what it put there has left. */

@@ -32,6 +32,7 @@ function prepare(settings) {
     checked: false,
     acknowledge: false,
     ackTimeout: 1000,
+    listens: 0,
     attempts: 5,
     random: createRandom(1),
     keep: 1000,

@@ -79,7 +79,7 @@ class Echo {
 
   /** Whether these bytes begin with our own echo, still awaited: noise may have come before it. */
   begins(bytes) {
-    return this.#awaited && bytes.length >= this.#sent.length && bytes.subarray(0, this.#sent.length).equals(this.#sent)
+    return this.#awaited && bytes.subarray(0, this.#sent.length).equals(this.#sent)
   }
 
   /**
@@ -88,10 +88,9 @@ class Echo {
    */
   answered(answer) {
     if (this.#mode !== 'auto') return
-    if (this.#state !== 'absent') {
-      if (this.#heard) this.#state = 'present'
-      else if (this.#clean) this.#state = this.#state === 'present' ? 'unknown' : 'absent'
-    }
+    // where nothing is heard, nothing was awaited
+    if (this.#heard) this.#state = 'present'
+    else if (this.#clean) this.#state = this.#state === 'present' ? 'unknown' : 'absent'
     if (this.#clean && !answer.equals(this.#sent)) this.#provenAt = this.#now()
   }
 }

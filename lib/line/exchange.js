@@ -50,10 +50,6 @@ class Exchange {
     this.#repeats.reset()
   }
 
-  get busy() {
-    return this.#job !== null
-  }
-
   /** The computed end of the frame that is being sent, or was sent last; ms of the clock. */
   get sendEnd() {
     return this.#sendEnd

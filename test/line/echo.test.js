@@ -2,6 +2,7 @@
 
 const assert = require('node:assert/strict')
 const { createBench, failure } = require('./support/bench')
+const { Echo } = require('../../lib/line/echo')
 const toy = require('./support/toy')
 
 /** A wire that hears itself (or not), with a station that answers (or not). */
@@ -125,5 +126,83 @@ describe('line: the echo of a 2-wire adapter', () => {
     assert.equal((await failure(put(on))).code, 'TIMEOUT')
     const off = createBench({ settings: { echo: 'off' }, onQuery: wired({ echo: false }) })
     assert.equal(await put(off), 'confirmed')
+  })
+})
+
+describe('line: what is known of an echo', () => {
+  const QUERY = Buffer.from('5105')
+  const ANSWER = Buffer.from('4107')
+  const create = (mode, start = 0) => {
+    const time = { now: start }
+    const echo = new Echo(mode, () => time.now)
+    /** One query, with what is heard before its answer. */
+    const step = (heard, answer = ANSWER) => {
+      echo.sent(QUERY)
+      const own = heard ? echo.look(heard) : 0
+      if (heard && own === 0) echo.disturbed(heard)
+      echo.answered(answer)
+      return own
+    }
+    return { time, echo, step }
+  }
+
+  it('by the setting, whatever comes', () => {
+    for (const [mode, state, own] of /** @type {[any, string, number][]} */ ([
+      ['on', 'present', QUERY.length],
+      ['off', 'absent', 0]
+    ])) {
+      const { time, echo, step } = create(mode)
+      assert.equal(echo.state, state)
+      echo.sent(QUERY)
+      assert.equal(echo.expected, own)
+      step(null)
+      assert.equal(step(QUERY), own)
+      assert.equal(echo.expected, 0)
+      time.now = 1e6
+      assert.equal(echo.state, state)
+    }
+  })
+
+  it('nothing is heard: known by an answer that came clean and is no copy, and believed for half a second', () => {
+    const { time, echo, step } = create('auto', 1000)
+    assert.equal(echo.state, 'unknown')
+    step(null)
+    assert.equal(echo.state, 'absent')
+    time.now = 1500
+    assert.equal(echo.state, 'absent')
+    time.now = 1501
+    assert.equal(echo.state, 'unknown')
+    assert.equal(step(null, QUERY), 0)
+    assert.equal(echo.state, 'unknown', 'a copy proves nothing')
+    step(Buffer.from('noise'))
+    assert.equal(echo.state, 'unknown', 'nor what came behind noise')
+    step(null)
+    assert.equal(echo.state, 'absent')
+  })
+
+  it('what was thought to hear nothing is in doubt after a copy of ours', () => {
+    const { echo, step } = create('auto')
+    step(null)
+    step(Buffer.from('noise'))
+    assert.equal(echo.state, 'absent')
+    step(Buffer.concat([Buffer.from('x'), QUERY]))
+    assert.equal(echo.state, 'unknown')
+    assert.equal(step(QUERY), QUERY.length)
+    assert.equal(echo.state, 'present')
+    echo.disturbed(QUERY)
+    assert.equal(echo.state, 'present')
+    echo.reset()
+    assert.equal(echo.state, 'unknown')
+  })
+
+  it('a part of it is too few to tell; behind noise it is recognised', () => {
+    const { echo } = create('on')
+    echo.sent(QUERY)
+    assert.equal(echo.look(QUERY.subarray(0, 1)), -1)
+    assert.equal(echo.look(Buffer.from('x')), 0)
+    assert.deepEqual([echo.begins(QUERY.subarray(0, 1)), echo.begins(ANSWER), echo.begins(QUERY)], [false, false, true])
+    assert.equal(echo.look(Buffer.concat([QUERY, ANSWER])), QUERY.length)
+    assert.equal(echo.begins(QUERY), false)
+    assert.equal(echo.look(QUERY), 0)
   })
 })

@@ -35,6 +35,17 @@ describe('line: the echo of a 2-wire adapter', () => {
     assert.equal(await put(bench), 'confirmed')
   })
 
+  it('is not there: that is believed for half a second, also by whoever looks at the line', async () => {
+    const { lease, run, clock } = createBench({
+      onQuery: (query, wire) => wire.reply(toy.answer(query[1], [7], query[2]))
+    })
+    await run(lease.run(() => toy.ask(1), { station: 1 }))
+    assert.equal(lease.line.echo, 'absent')
+    await clock.advance(501)
+    assert.equal(lease.line.echo, 'unknown')
+    await run(lease.release())
+  })
+
   it('confirms no write while it is unknown', async () => {
     const bench = createBench({ onQuery: wired({ answers: false }) })
     assert.equal((await failure(put(bench))).code, 'TIMEOUT')

@@ -2,7 +2,10 @@
 
 const assert = require('node:assert/strict')
 const { PRIORITY } = require('../../lib/line')
+const { Echo } = require('../../lib/line/echo')
+const { Exchange } = require('../../lib/line/exchange')
 const { CHARACTER, createBench, failure } = require('./support/bench')
+const { createLateClock } = require('./support/late-clock')
 const toy = require('./support/toy')
 
 const answering =
@@ -78,7 +81,7 @@ describe('line: the answer', () => {
   it('stops early: INCOMPLETE with the numbers, at once after the wire time and slack', async () => {
     const { error, ms, stats } = await exchange([[10, ANSWER.slice(0, 10)]])
     assert.equal(error.code, 'INCOMPLETE')
-    assert.match(error.message, /stopped after 5 of 7 bytes/)
+    assert.deepEqual(error.details, { station: 5, got: 5, expected: 7, sent: true })
     near(ms, 10 + 7 * CHARACTER + 50, 'waited')
     assert.equal(stats.incomplete, 1)
   })
@@ -91,6 +94,7 @@ describe('line: the answer', () => {
   it('is damaged: CRC_ERROR at once', async () => {
     const { error, ms, stats } = await exchange([[10, `${ANSWER.slice(0, -2)}00`]])
     assert.equal(error.code, 'CRC_ERROR')
+    assert.deepEqual([error.details.sent, error.details.got], [true, `${ANSWER.slice(0, -2)}00`])
     near(ms, 10, 'waited')
     assert.equal(stats.crcErrors, 1)
   })
@@ -262,6 +266,9 @@ describe('line: a jammed line', () => {
       ]
     )
     assert.ok(clock.now() - start >= 1000 && clock.now() - start < 1003)
+    // 16 each ms
+    for (const { details } of errors) assert.ok(details.bytes === 0 || Math.abs(details.bytes - 16000) < 50)
+    assert.ok(errors[0].details.bytes > 0)
     assert.equal(wire.sent.length, 0)
     assert.equal(lease.line.state, 'jammed')
     assert.deepEqual(events, ['jammed'])
@@ -360,5 +367,91 @@ describe('line: sending', () => {
     // 5 of 7 are there
     assert.equal(hints[1][0], 2)
     near(hints[1][1], end + 5 + 2 * CHARACTER, 'second')
+  })
+
+  it('where we hear ourselves the answer is awaited behind our own bytes', async () => {
+    const hints = []
+    const bench = createBench({
+      settings: { echo: 'on' },
+      transports: {
+        simulated: (settings, clock) => ({
+          ...require('../../lib/line/transports/memory').simulated(settings, clock),
+          hint: (count, at) => hints.push([count, at])
+        })
+      },
+      onQuery: (query, w) => {
+        w.reply(query.subarray(0, 3), { after: 1 })
+        w.reply(query.subarray(3), { after: 2 })
+        w.reply(Buffer.from(ANSWER, 'hex'), { after: 8 })
+      }
+    })
+    await bench.run(bench.lease.run(() => toy.ask(5), { station: 5 }))
+    const end = bench.wire.queryEnd
+    assert.deepEqual(
+      hints.map(([count]) => count),
+      [9, 6, 5]
+    )
+    // our own bytes come while we send
+    near(hints[0][1], end + 5 * CHARACTER, 'all')
+    near(hints[1][1], end + 1 + 6 * CHARACTER, 'behind a part of them')
+    near(hints[2][1], end + 2 + 5 * CHARACTER, 'behind them')
+  })
+})
+
+describe('line: one step, in a process that is late', () => {
+  const STEP = { send: Buffer.from('query'), match: toy.answerTo(5, 0), timeout: 200 }
+  const start = (step = STEP) => {
+    const clock = createLateClock()
+    const ended = []
+    const link = {
+      write: (_, done) => done(),
+      hint: () => {},
+      waiting: () => false,
+      stray: () => {},
+      skipped: () => {},
+      echoed: () => {}
+    }
+    const times = { character: 1, slack: 50, gap: 0 }
+    const settings = { writeTimeout: 1000, jamTime: 1000 }
+    const one = new Exchange({ clock, settings, times, echo: new Echo('off', clock.now), link })
+    const done = (error, answer, facts) => ended.push([error?.code ?? answer.toString('hex'), facts])
+    one.start(step, { gap: 0, station: 5, sent: () => {}, done })
+    return { clock, one, ended, hear: hex => one.data(Buffer.from(hex, 'hex')) }
+  }
+
+  it('a timeout seen up to 10 ms late is one; later, what came meanwhile gets as much time, 250 ms at most, once', () => {
+    for (const [woken, due] of [
+      [216, 227],
+      [305, 405],
+      [805, 1055]
+    ]) {
+      const { clock, ended } = start()
+      clock.wake(204)
+      assert.deepEqual([ended, clock.due()], [[], [205]])
+      clock.wake(woken)
+      assert.deepEqual([ended, clock.due()], [[], [due]])
+      clock.wake(due + 400)
+      assert.deepEqual([ended[0][0], clock.due()], ['TIMEOUT', []])
+    }
+    const { clock, ended } = start()
+    clock.wake(215)
+    assert.equal(ended[0][0], 'TIMEOUT')
+  })
+
+  it('an answer that is read then is taken; how long the station took, and the whole exchange', () => {
+    const { clock, one, ended, hear } = start()
+    clock.wake(305)
+    clock.wake(310)
+    hear(`${ANSWER}aabb`)
+    const [[answer, { rest, sent, ms, wait, due }]] = ended
+    assert.deepEqual([answer, rest.toString('hex'), sent, ms, wait, due], [ANSWER, 'aabb', true, 305, 298, 205])
+    assert.deepEqual([one.abort(), clock.due()], [null, []])
+  })
+
+  it('an answer that came faster than the wire: the station took no time', () => {
+    const { clock, ended, hear } = start()
+    clock.wake(6)
+    hear(ANSWER)
+    assert.deepEqual([ended[0][1].ms, ended[0][1].wait], [1, 0])
   })
 })

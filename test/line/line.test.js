@@ -3,7 +3,7 @@
 const assert = require('node:assert/strict')
 const { PRIORITY } = require('../../lib/line')
 const { PlcError } = require('../../lib/error')
-const { createBench, failure } = require('./support/bench')
+const { CHARACTER, createBench, failure } = require('./support/bench')
 const toy = require('./support/toy')
 
 const { WRITE, ASK, POLL } = PRIORITY
@@ -59,6 +59,60 @@ describe('line: requests', () => {
     assert.deepEqual(await run(others), [1])
   })
 
+  it('on the wire go on for the others when one leaves; the wire is free as soon as nobody waits', async () => {
+    const { clock, lease, open, run, wire } = createBench()
+    const other = open({}, 'other')
+    await clock.advance(1)
+    const blocked = failure(lease.run(() => toy.ask(9, { timeout: 50 }), { station: 9 }))
+    const asked = [lease, other].map(one =>
+      one.run(() => toy.ask(1, { timeout: 5000 }), { station: 1, priority: POLL, key: 'a' })
+    )
+    asked[0].catch(() => {})
+    await run(blocked)
+    await clock.advance(10)
+    assert.equal(wire.sent.length, 2)
+    await lease.release()
+    wire.handlers.data(toy.answer(1, [4]))
+    assert.deepEqual(await run(asked[1]), [4])
+
+    const third = open({}, 'third')
+    const gone = failure(other.run(() => toy.ask(2, { timeout: 5000 }), { station: 2 }))
+    const next = failure(third.run(() => toy.ask(3), { station: 3 }))
+    await clock.advance(20)
+    assert.equal(wire.sent.length, 3)
+    await other.release()
+    assert.equal((await gone).code, 'LINE_CLOSED')
+    await clock.advance(20)
+    assert.equal(wire.sent.length, 4)
+    await run(next)
+    await run(third.release())
+  })
+
+  it('that clear go out at once, and their station is free again if they were right', async () => {
+    for (const right of [true, false, undefined]) {
+      const { clock, lease, run, wire } = createBench()
+      await clock.advance(1)
+      const clearing = function* () {
+        try {
+          yield* toy.ask(1)
+        } catch {
+          wire.onQuery = (query, w) => right !== undefined && w.reply(toy.answer(1, [0], query[2]))
+          const step = { send: toy.query(1, 7), match: toy.answerTo(1, 7), timeout: 50 }
+          return yield { ...step, clears: () => right }
+        }
+      }
+      await run(lease.run(clearing, { station: 1 }).catch(({ code }) => code))
+      const from = wire.sent[0].at + 4 * CHARACTER + 200
+      assert.ok(wire.sent[1].at < from + 5)
+      wire.onQuery = (query, w) => w.reply(toy.answer(1, [3], query[2]))
+      assert.deepEqual(await run(lease.run(() => toy.ask(1), { station: 1 })), [3])
+      // one that was not answered makes it no longer
+      const at = wire.sent[2].at
+      assert.ok(right ? at < from + 100 : Math.abs(at - from - 1000) < 3, `${right}: ${at - from}`)
+      await run(lease.release())
+    }
+  })
+
   it('that are too many end with QUEUE_FULL; none that waits is dropped', async () => {
     const { lease, run, clock } = createBench({ onQuery: answering, settings: { queueLimit: 3 } })
     await clock.advance(1)
@@ -66,7 +120,7 @@ describe('line: requests', () => {
     const accepted = [1, 2, 3, 4].map(write)
     const error = await failure(write(5))
     assert.equal(error.code, 'QUEUE_FULL')
-    assert.match(error.message, /the line is full \(3 requests\)/)
+    assert.deepEqual(error.details, { line: 'the line', most: 3, sent: false })
     assert.deepEqual(await run(Promise.all(accepted)), [[1], [2], [3], [4]])
     assert.equal(lease.line.stats().queueFull, 1)
   })
@@ -77,6 +131,7 @@ describe('line: requests', () => {
     const start = clock.now()
     const error = await run(failure(lease.run(() => toy.ask(2), { station: 2, deadline: 100 })))
     assert.deepEqual([error.code, error.details.sent, clock.now() - start], ['DEADLINE', false, 100])
+    assert.deepEqual([error.details.line, error.details.limit], ['the line', 100])
     await run(slow)
     assert.equal(wire.sent.length, 1)
     wire.onQuery = answering
@@ -282,6 +337,20 @@ describe('line: opening, losing, coming back', () => {
       ['waiting', 'PORT_GONE'],
       ['open', undefined]
     ])
+  })
+
+  it('a step in the pause before it has not been sent, and its station may be asked at once', async () => {
+    const { lease, run, clock, wire } = createBench({ settings: { gap: 500 }, onQuery: answering })
+    await clock.advance(1)
+    await run(lease.run(() => toy.ask(1), { station: 1 }))
+    const failed = failure(lease.run(() => toy.ask(2), { station: 2 }))
+    await clock.advance(100)
+    wire.unplug()
+    const error = await run(failed)
+    assert.deepEqual([error.code, error.details.sent], ['PORT_GONE', false])
+    assert.equal(wire.sent.length, 1)
+    assert.equal(lease.line.memory(2).until < clock.now(), true)
+    await run(lease.release())
   })
 
   it('the conversation is told, and may give its own error', async () => {

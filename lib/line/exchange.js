@@ -41,7 +41,7 @@ class Exchange {
     this.#times = times
     this.#echo = echo
     this.#link = link
-    this.#repeats = new Repeats(times.character)
+    this.#repeats = new Repeats({ character: times.character, simulated: settings.transport === 'simulated' })
     this.#silence = new Silence({ clock, quietSince: () => this.quietSince })
   }
 

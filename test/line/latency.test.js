@@ -24,6 +24,9 @@ describe('latency timer of an FTDI adapter', () => {
     ['of another kind of port', '/dev/ttyS0', '16\n', null],
     ['of a port that is not there', '/dev/ttyUSB9', '16\n', null],
     ['no number', '/dev/ttyUSB3', 'rubbish', null],
+    ['more than a number', '/dev/ttyUSB3', '16 ms', null],
+    ['a number behind something', '/dev/ttyUSB3', 'ms 16', null],
+    ['too long', '/dev/ttyUSB3', '1000', null],
     ['empty', '/dev/ttyUSB3', '', null]
   ])) {
     it(`${what}: ${expected === null ? 'none' : `${expected} ms`}`, async () => {

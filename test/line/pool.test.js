@@ -180,6 +180,19 @@ describe('line: pool', () => {
     assert.doesNotThrow(() => open('/dev/a', 'PLC hall 3', { name: 'another name' }))
   })
 
+  it('a conflict names who has the wire now, not who opened it first', async () => {
+    const { clock, open, run } = createPorts({ '/dev/a': { id: '/dev/b' }, '/dev/b': {} })
+    const first = open('/dev/a', 'gone')
+    const second = open('/dev/a', 'PLC 2')
+    await clock.advance(10)
+    await run(first.release())
+    assert.equal(thrown(() => open('/dev/a', 'PLC 3', { baudRate: 9600 })).details.other, 'PLC 2')
+    const other = open('/dev/b', 'PLC 4')
+    await clock.advance(10)
+    assert.deepEqual([other.line.reason.code, other.line.reason.details.owner], ['WIRE_IN_USE', 'PLC 2'])
+    await run(Promise.all([second.release(), other.release()]))
+  })
+
   it('two wires in memory under one path are a conflict too', () => {
     const { open } = createBench()
     assert.equal(thrown(() => open({ wire: createWire(null) }, 'b')).code, 'WIRE_CONFLICT')

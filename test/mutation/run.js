@@ -31,8 +31,11 @@ const PARTS = Object.freeze({
   'lib/codec/modbus': { mutate: 'lib/codec/modbus/*.js', tests: () => testsOf('test/codec/modbus') },
   'lib/codec/melsec': { mutate: 'lib/codec/melsec/*.js', tests: () => testsOf('test/codec/melsec') },
   'lib/codec/incon': { mutate: 'lib/codec/incon/*.js', tests: () => testsOf('test/codec/incon') },
-  'lib/line': { mutate: 'lib/line/!(evidence*).js', tests: () => testsOf('test/line', [...LONG, ...EVIDENCE]) },
-  'lib/line/evidence': { mutate: 'lib/line/evidence*.js', tests: () => EVIDENCE.map(name => `test/line/${name}`) },
+  'lib/line': { mutate: 'lib/line/!(evidence*|archive).js', tests: () => testsOf('test/line', [...LONG, ...EVIDENCE]) },
+  'lib/line/evidence': {
+    mutate: 'lib/line/@(evidence*|archive).js',
+    tests: () => EVIDENCE.map(name => `test/line/${name}`)
+  },
   'lib/line/transports': { mutate: 'lib/line/transports/*.js', tests: () => testsOf('test/line/transports') }
 })
 const LEAST = 85 // percent

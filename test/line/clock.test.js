@@ -1,0 +1,28 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { realClock, timeText } = require('../../lib/line/clock')
+
+const waited = ms => new Promise(resolve => realClock.setTimer(() => resolve(undefined), ms))
+
+describe('line: the clock of the machine', () => {
+  it('counts ms with fractions, tells the time of day, and fires no timer more than a moment too early', async () => {
+    const from = realClock.now()
+    assert.ok(Math.abs(realClock.wall() - Date.now()) < 1000)
+    const fired = []
+    realClock.clearTimer(realClock.setTimer(() => fired.push('cleared'), 1))
+    realClock.clearTimer(undefined)
+    await waited(15.2)
+    assert.ok(realClock.now() - from >= 14.5)
+    await waited(-5)
+    assert.deepEqual(fired, [])
+    assert.ok(Object.isFrozen(realClock))
+  })
+
+  it('a moment as a text, where a date can say it', () => {
+    assert.equal(timeText(0), '1970-01-01T00:00:00.000Z')
+    assert.equal(timeText(8.64e15), '+275760-09-13T00:00:00.000Z')
+    assert.equal(timeText(-8.64e15), '-271821-04-20T00:00:00.000Z')
+    for (const none of [8.64e15 + 2, -Infinity, NaN]) assert.equal(timeText(none), null)
+  })
+})

@@ -318,6 +318,9 @@ describe('audit: whatever it is given', () => {
       }
     })
     assert.equal(told({}, { value: trap }).text, '(object)')
+    const gone = new Uint8Array(8)
+    structuredClone(gone.buffer, { transfer: [gone.buffer] })
+    assert.equal(told({}, { value: gone }).text, '(object)')
     assert.equal(told({}, { value: null }).text, '')
     assert.equal(told({}, { value: undefined }).text, '')
     assert.equal(told({}, { value: [1, 'a', true] }).text, '1 a true')

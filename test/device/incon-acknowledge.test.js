@@ -373,6 +373,11 @@ describe('INCON link, acknowledged lines', () => {
     assert.ok(!bench.texts().includes(line(2, 'B')))
   })
 
+  it('a deadline that is long enough changes nothing', async () => {
+    await begun()
+    assert.strictEqual(short(await bench.run(bench.device.send('A', { deadline: 60000 }))), 'confirmed 1')
+  })
+
   it('needs checked lines, and all links of a line must want it', () => {
     open()
     assert.throws(() => bench.make({ checked: false }), { code: 'BAD_SETTING' })

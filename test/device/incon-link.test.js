@@ -177,6 +177,16 @@ describe('INCON link', () => {
     await bench.run(lease.release())
   })
 
+  it('a character that UTF-8 does not have is damage', async () => {
+    open({ link: { encoding: 'utf8' } })
+    bench.wire.noise(Buffer.from('Ofen \u00e4\r\n'))
+    await bench.clock.drain()
+    bench.wire.noise(Buffer.from('Ofen \u00e4\r\n', 'latin1'))
+    await bench.clock.drain()
+    assert.deepStrictEqual(bench.heard(), ['Ofen \u00e4', ['Ofen \ufffd', 'encoding']])
+    assert.strictEqual(bench.device.stats.damaged, 1)
+  })
+
   it('settings that cannot be are refused', () => {
     open()
     const wrong = [{ most: 1 }, { silence: -1 }, { quiet: 'x' }, { before: 1e6 }, { encoding: 'ebcdic' }]

@@ -51,6 +51,39 @@ const GAPS = [
   ['lib/device/diagnosis/station.js', 'item ?? FIRST[given.protocol][0]', 'the raw address is always one'],
   ['lib/device/diagnosis/causes.js', "CODES[code]?.[1] ?? 'Look at the cause.'", 'each code of ours has its remedy'],
   ['lib/device/health.js', 'if (!this.#isDemoted) return', 'the timer is stopped when a station comes back'],
+  [
+    'lib/device/diagnose.js',
+    'if (heard.event) return resolve(undefined)',
+    'an answer that comes late, but in the same turn as the end of the read'
+  ],
+  ['lib/device/diagnosis/causes.js', "hex.match(/../g)?.join(' ') ?? ''", 'only bytes that came are shown'],
+  ['lib/device/diagnosis/station.js', '} catch {', 'a device that could be made knows its own tags'],
+  ['lib/device/diagnosis/station.js', 'return isUsable ? row : undefined', 'the same'],
+  ['lib/device/health.js', '    throw error', 'a conversation that goes on after it was told to end; ours do not'],
+  [
+    'lib/device/health.js',
+    'if (this.#health.probeAt - this.#clock.now() > 1) this.#arm()',
+    'another device of the station has probed: only where both timers are due at one moment'
+  ],
+  ['lib/device/health.js', 'if (at >= this.#health.probeAt) return', 'its own probe is due sooner, by chance'],
+  ['lib/device/incon-talk.js', '} catch {', 'an acknowledgement that the line does not take: the other side repeats'],
+  ['lib/device/incon-talk.js', 'if (over) return', 'its deadline and its end at one moment'],
+  ['lib/device/incon-talk.js', 'settle(now >= due ? tooLate()', 'a deadline that ends while the start goes out'],
+  ['lib/device/incon-talk.js', 'if (port.closed) leave()', 'a link that is closed between two turns of the loop'],
+  ['lib/device/incon-talk.js', 'if (flight.end) return null', 'acknowledged while a repetition waits for its turn'],
+  ['lib/device/incon-talk.js', 'if (sent > 0) flight.went(sent)', 'a line that is cut off: test/line/stream-torn'],
+  [
+    'lib/device/modbus-clearing.js',
+    'if (!step.match) return yield step',
+    'a broadcast goes out without it; kept for a conversation that has one among its steps'
+  ],
+  [
+    'lib/device/modbus-exchange.js',
+    'if (!end) throw',
+    'modbus-serial 8 says something of each frame; kept for another version of it'
+  ],
+  ['lib/device/reader.js', "if (error.code !== 'FRAME_TOO_LONG') throw error", 'addresses were checked before'],
+  ['lib/device/talk.js', 'result.seenStation ??', 'each answer of a PLC tells its number'],
   // --- real time, real descriptors
   [
     'lib/line/transports/paced-binding.js',

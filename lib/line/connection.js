@@ -48,6 +48,11 @@ class Connection {
     return this.#open
   }
 
+  /** What the transport that is open claims; undefined: none is. */
+  get id() {
+    return this.#claimed
+  }
+
   /** Opens now, and again whenever it is lost. */
   start() {
     this.#wanted = true

@@ -41,13 +41,13 @@ class Exchange {
     this.#times = times
     this.#echo = echo
     this.#link = link
-    this.#repeats = new Repeats({ character: times.character, simulated: settings.transport === 'simulated' })
+    this.#repeats = new Repeats({ character: times.character, transport: settings.transport })
     this.#silence = new Silence({ clock, quietSince: () => this.quietSince })
   }
 
-  /** The port was opened. */
-  opened() {
-    this.#repeats.reset()
+  /** The port was opened. @param {unknown} id what its transport claims */
+  opened(id) {
+    this.#repeats.opened(id)
   }
 
   /** The computed end of the frame that is being sent, or was sent last; ms of the clock. */

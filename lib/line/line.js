@@ -208,7 +208,7 @@ class Line extends EventEmitter {
   #opened() {
     this.#stopTimers()
     this.#missing.opened()
-    this.#requests.opened()
+    this.#requests.opened(this.#connection.id)
     this.#stream.opened()
     this.#become('open')
   }

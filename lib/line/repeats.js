@@ -2,12 +2,15 @@
 
 /** How far the wire's true speed may lie from the configured one. */
 const SPEED = 0.97
-/**
- * After so many answers that took the wire's time, a copy of one of them is old if it comes early; after so many, whatever comes early is. A
- * pseudo-terminal, an adapter that has no speed, or a serial server may be slow by chance; a simulated wire has its speed always.
- */
-const SURE = Object.freeze({ copies: 4, all: 20 })
-const SURE_SIMULATED = Object.freeze({ copies: 1, all: 3 })
+/** After so many answers that took the wire's time, an early copy of one of them is old; after so many, whatever comes early is. */
+const SURE = Object.freeze({ copies: 1, all: 3 })
+const SURE_LATER = Object.freeze({ copies: 4, all: 20 })
+/** Where there may be no wire at all, an answer proves its time only if query and answer take so long (ms) that no program is as slow by chance. */
+const LONG = 50
+
+/** Pseudo-terminals and adapters that have no speed of their own, on Linux and macOS: what is behind them may be a program. */
+const NO_WIRE = /^\/dev\/(pts\/|ttys\d|ttyACM|ttyGS|cu\.usbmodem|tty\.usbmodem)/
+
 /** So many steps in a row that failed after an answer was dropped: it was none that is old, the speed is another one. */
 const MISTAKES = 2
 
@@ -16,12 +19,15 @@ const MISTAKES = 2
  * adapter's buffer while the next query goes out, and where nothing in a frame tells which query it answers, it would be taken. But a frame that
  * began before the query was sent does not answer it: the wire's time tells.
  *
- * Programs that answer without a wire, and serial servers that are faster than their configuration says, are always early: there the wire's time
- * tells nothing. The first answers after an opening show it; as long as they are few, only a frame that was taken lately is held to be old.
+ * A serial port has the speed that it was opened with, and so has a simulated wire. Programs that answer without a wire, and serial servers that are
+ * faster than their configuration says, are early: there the wire's time tells nothing. Answers show it; as long as they are few, only a frame that
+ * was taken lately is held to be old.
  */
 class Repeats {
   #character
-  #sure
+  #transport
+  /** whether it is known that there is a wire */
+  #wire = false
   /** the first answers @type {Buffer[]} */
   #taken = []
   /** answers that took the wire's time since the port was opened */
@@ -31,14 +37,15 @@ class Repeats {
   #dropped = false
   #mistakes = 0
 
-  /** @param {{ character: number, simulated: boolean }} wire character: ms that one takes */
-  constructor({ character, simulated }) {
+  /** @param {{ character: number, transport: string }} line character: ms that one takes */
+  constructor({ character, transport }) {
     this.#character = character
-    this.#sure = simulated ? SURE_SIMULATED : SURE
+    this.#transport = transport
   }
 
-  /** The port was opened: another line may be behind it. */
-  reset() {
+  /** The port was opened: another line may be behind it. @param {unknown} [id] what the transport claims: the real path of a serial port */
+  opened(id) {
+    this.#wire = this.#transport === 'simulated' || (this.#transport === 'serial' && !NO_WIRE.test(String(id)))
     this.#taken = []
     this.#timely = 0
     this.#unpaced = false
@@ -56,11 +63,15 @@ class Repeats {
    * @returns {boolean} whether it is an old answer
    */
   isOld(frame, query) {
-    const { copies, all } = this.#sure
+    const { copies, all } = this.#sure()
     if (this.#unpaced || this.#timely < copies || !this.#isEarly(frame, query)) return false
     if (this.#timely < all && !this.#taken.some(each => each.equals(frame))) return false
     this.#dropped = true
     return true
+  }
+
+  #sure() {
+    return this.#wire ? SURE : SURE_LATER
   }
 
   #isEarly(frame, { length, sentAt, now }) {
@@ -71,9 +82,9 @@ class Repeats {
   /** The query was answered. @param {Buffer} frame @param {{ length: number, sentAt: number, now: number }} query */
   answered(frame, query) {
     if (this.#isEarly(frame, query)) this.#unpaced = true
-    else this.#timely++
+    else if (this.#wire || (frame.length + query.length) * this.#character >= LONG) this.#timely++
     this.#mistakes = 0
-    if (this.#taken.length < this.#sure.all) this.#taken.push(frame)
+    if (this.#taken.length < this.#sure().all) this.#taken.push(frame)
   }
 
   /** It was not. */

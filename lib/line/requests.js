@@ -104,9 +104,10 @@ class Requests {
     this.#driver.drop(lease, reason)
   }
 
-  opened() {
+  /** @param {unknown} id what the transport claims */
+  opened(id) {
     this.#echo.reset()
-    this.#exchange.opened()
+    this.#exchange.opened(id)
     this.#quarantine.opened()
   }
 

@@ -115,7 +115,11 @@ describe('what is known of answers that were taken', () => {
   // at 0.97 of 100 ms a character, a query of 8 and an answer of 7
   const SOONEST = 15 * 97
   const at = now => ({ length: LENGTH, sentAt: 0, now })
-  const created = (simulated = true) => new Repeats({ character: 100, simulated })
+  const created = (transport = 'simulated', id = '') => {
+    const repeats = new Repeats({ character: 100, transport })
+    repeats.opened(id)
+    return repeats
+  }
   const paced = (...frames) => {
     const repeats = created()
     for (const frame of frames) repeats.answered(frame, at(SOONEST))
@@ -131,7 +135,6 @@ describe('what is known of answers that were taken', () => {
   })
 
   it('after three answers it is sure that all take the time of the wire: any early one is old', () => {
-    const other = hex('0b 03 02 77 3a 87 a6')
     assert.deepEqual(
       [paced(A, B), paced(A, A, B), paced(A, B, A, B)].map(repeats => repeats.isOld(other, early)),
       [false, true, true]
@@ -139,19 +142,57 @@ describe('what is known of answers that were taken', () => {
     assert.equal(paced(A, B, A).isOld(other, at(SOONEST)), false, 'just in time')
   })
 
-  it('a real port is believed later: four answers for a copy, twenty for all', () => {
-    const other = hex('0b 03 02 77 3a 87 a6')
-    const after = count => {
-      const repeats = created(false)
-      for (let n = 0; n < count; n++) repeats.answered(n === 0 ? A : B, at(SOONEST))
-      return [repeats.isOld(A, early), repeats.isOld(other, early)]
+  const other = hex('0b 03 02 77 3a 87 a6')
+  const after = (count, make) => {
+    const repeats = make()
+    for (let n = 0; n < count; n++) repeats.answered(n === 0 ? A : B, at(SOONEST))
+    return [repeats.isOld(A, early), repeats.isOld(other, early)]
+  }
+
+  it('a serial port has its speed, by whatever name', () => {
+    for (const id of ['/dev/ttyUSB0', '/dev/ttyS1', '/dev/ttyAMA0', 'COM3', '/dev/cu.usbserial-1']) {
+      const counts = [0, 1, 2, 3].map(count => after(count, () => created('serial', id)))
+      assert.deepEqual(
+        counts,
+        [
+          [false, false],
+          [true, false],
+          [true, false],
+          [true, true]
+        ],
+        id
+      )
     }
-    assert.deepEqual([3, 4, 19, 20].map(after), [
-      [false, false],
-      [true, false],
-      [true, false],
-      [true, true]
-    ])
+  })
+
+  it('where there may be no wire it is believed later: four answers for a copy, twenty for all', () => {
+    for (const [transport, id] of [
+      ['tcp', 'host:4001'],
+      ['serial', '/dev/pts/3'],
+      ['serial', '/dev/ttyACM0']
+    ]) {
+      const counts = [3, 4, 19, 20].map(count => after(count, () => created(transport, id)))
+      assert.deepEqual(
+        counts,
+        [
+          [false, false],
+          [true, false],
+          [true, false],
+          [true, true]
+        ],
+        id
+      )
+    }
+  })
+
+  it('there short answers prove nothing: a program may be as slow', () => {
+    const repeats = new Repeats({ character: 0.5, transport: 'tcp' })
+    repeats.opened('host:4001')
+    for (let n = 0; n < 100; n++) repeats.answered(A, { length: LENGTH, sentAt: 0, now: 20 })
+    assert.equal(repeats.isOld(A, { length: LENGTH, sentAt: 0, now: 1 }), false)
+    const long = Buffer.alloc(93, 1)
+    for (let n = 0; n < 20; n++) repeats.answered(long, { length: LENGTH, sentAt: 0, now: 60 })
+    assert.equal(repeats.isOld(A, { length: LENGTH, sentAt: 0, now: 1 }), true)
   })
 
   it('two steps that fail after one was dropped tell of a faster wire; others do not', () => {
@@ -168,10 +209,10 @@ describe('what is known of answers that were taken', () => {
 
   it('another opening: nothing is known', () => {
     const repeats = paced(A)
-    repeats.reset()
+    repeats.opened('')
     repeats.answered(B, at(SOONEST))
     assert.deepEqual([repeats.isOld(A, early), repeats.isOld(B, early)], [false, true])
-    repeats.reset()
+    repeats.opened('')
     repeats.answered(A, early)
     assert.equal(repeats.isOld(A, early), false, 'this one has no pace')
   })

@@ -126,7 +126,7 @@ describe('system: faults on real ports', function () {
   it('noise, damage, lateness, strangers and losses on a line of four stations: no value is wrong, whatever the fault', async () => {
     const { wrong, values, writes, faults } = await ended('mixed')
     assert.deepEqual(wrong, [])
-    assert.ok(values > 50 && writes > 5, `${values} values, ${writes} writes`)
+    assert.ok(values > 50 && writes > 1, `${values} values, ${writes} writes`)
     assert.ok(Object.keys(faults).length >= 7, JSON.stringify(faults))
   })
 

@@ -1,24 +1,63 @@
 'use strict'
 
 /**
- * Simulated stations in a process of their own, behind a virtual serial port that keeps the pace of its speed.
- * That process is this file: `node bench/far-end.js LINK SETTINGS`, settings of `createLine` as JSON.
+ * Simulated stations in a process of their own, behind virtual serial ports that keep the pace of their speed.
+ * That process is this file: `node bench/far-end.js FOLDER COUNT SETTINGS`, settings of `createLine` as JSON.
  */
 const { spawn } = require('node:child_process')
 const { once } = require('node:events')
 const { mkdtempSync, rmSync } = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
-const { createLine, serveOnPty } = require('../lib/sim')
+const { createLine, createRealClock, serveOnPty } = require('../lib/sim')
+
+const SPIN = 1.5 // ms
+const GAP = 25 // ms: pauses of programs inside of a frame, which a wire does not have
 
 /**
- * @param {Record<string, any>} settings of `createLine`
- * @returns {Promise<{ link: string, close: () => Promise<void> }>} link: the port to open
+ * A clock whose timers are not late: the last moments before each are waited for actively. The bytes of a wire come when they are due, those of a
+ * simulator a millisecond later; where a bench measures such short times, the simulator must not be what it measures. Takes a good part of a core.
  */
-async function startFarEnd(settings) {
+const preciseClock = () => {
+  const { now, wall } = createRealClock()
+  const arm = timer => {
+    const left = timer.at - now()
+    if (timer.fn === null) return
+    if (left > SPIN) timer.waits = setTimeout(arm, left - SPIN, timer)
+    else if (left > 0) setImmediate(arm, timer)
+    else timer.fn()
+  }
+  const setTimer = (fn, ms) => {
+    const timer = { fn, at: now() + ms, waits: /** @type {any} */ (null) }
+    // never at once, as with any timer
+    if (ms > SPIN) arm(timer)
+    else setImmediate(arm, timer)
+    return timer
+  }
+  const clearTimer = timer => {
+    if (!timer) return
+    clearTimeout(timer.waits)
+    timer.fn = null
+  }
+  return { now, wall, setTimer, clearTimer }
+}
+
+/** What `createLine` is given. */
+const lineSettings = ({ precise = false, stations, ...settings }) => {
+  if (!precise) return { stations, ...settings }
+  return { ...settings, clock: preciseClock(), stations: stations.map(station => ({ station, gap: GAP })) }
+}
+
+const linkIn = (folder, n) => path.join(folder, `line${n}`)
+
+/**
+ * @param {Record<string, any> & { lines?: number, precise?: boolean }} settings of `createLine`; lines: so many of them, default one; precise: bytes are
+ *   never late, for which the process takes most of a core (stations are numbers then)
+ * @returns {Promise<{ link: string, links: string[], close: () => Promise<void> }>} links: the ports to open; link: the first
+ */
+async function startFarEnd({ lines = 1, ...settings }) {
   const folder = mkdtempSync(path.join(os.tmpdir(), 'bench-'))
-  const link = path.join(folder, 'line')
-  const child = spawn(process.execPath, [__filename, link, JSON.stringify(settings)], {
+  const child = spawn(process.execPath, [__filename, folder, String(lines), JSON.stringify(settings)], {
     stdio: ['ignore', 'pipe', 'inherit']
   })
   const close = async () => {
@@ -36,15 +75,17 @@ async function startFarEnd(settings) {
     await close()
     throw error
   }
-  return { link, close }
+  const links = Array.from({ length: lines }, (_, n) => linkIn(folder, n))
+  return { link: links[0], links, close }
 }
 
 if (require.main === module) {
-  const [, , link, settings] = process.argv
-  const { wire } = createLine(JSON.parse(settings))
-  const server = serveOnPty({ wire, link })
+  const [, , folder, lines, settings] = process.argv
+  const servers = Array.from({ length: Number(lines) }, (_, n) =>
+    serveOnPty({ wire: createLine(lineSettings(JSON.parse(settings))).wire, link: linkIn(folder, n) })
+  )
   process.once('SIGTERM', () => {
-    server.close()
+    for (const server of servers) server.close()
     process.exit(0)
   })
   process.stdout.write('ready\n')

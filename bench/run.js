@@ -1,56 +1,54 @@
 'use strict'
 
 /**
- * `npm run bench [-- --json] [NAME]`: each row measures ours and a peer (or the wire's own limit) in the same run and prints their ratio.
- * A row whose goal does not hold makes the exit code 1.
+ * `npm run bench [-- --json] [NAME …]`: each row measures ours and a peer (or a limit) in the same run and prints their ratio. NAME: a file of
+ * rows/. What each row is: docs/speed.md. A row whose goal does not hold makes the exit code 1.
  */
 const { readdirSync } = require('node:fs')
 const path = require('node:path')
 const { parseArgs } = require('node:util')
+const { judge, lineOf } = require('./judge')
 
 const folder = path.join(__dirname, 'rows')
 
-/** @typedef {{ name: string, value: number, unit: string, against: string, ratio: number, goal: string, holds: boolean }} Row */
+const known = () => readdirSync(folder).map(file => path.parse(file).name)
 
-const limits = {
-  '<=': (ratio, bound) => ratio <= bound,
-  '>=': (ratio, bound) => ratio >= bound
+/** @param {string[]} wanted @returns {string[]} names of the rows' files; all where none is wanted */
+const chosen = wanted => {
+  const all = known()
+  const unknown = wanted.find(name => !all.includes(name))
+  if (unknown !== undefined) throw new Error(`there is no bench ${unknown}; there are: ${all.join(' ')}`)
+  return wanted.length === 0 ? all : all.filter(name => wanted.includes(name))
 }
 
 /**
- * @param {{ name: string, value: number, unit: string, against: string, ratio: number, goal: ['<=' | '>=', number] }} measured
- * @returns {Row}
+ * @param {string[]} names
+ * @param {{ json: boolean, print: (line: string) => void, load?: (name: string) => { rows: () => AsyncIterable<any> } }} options load: the rows of a name
+ * @returns {Promise<number>} rows whose goal does not hold
  */
-function judge({ goal: [sign, bound], ...measured }) {
-  return { ...measured, goal: `${sign} ${bound}`, holds: limits[sign](measured.ratio, bound) }
-}
-
-function print(row, json) {
-  if (json) return console.log(JSON.stringify(row))
-  const { name, value, unit, against, ratio, goal, holds } = row
-  console.log(
-    `${holds ? 'ok  ' : 'MISS'} ${name}: ${value.toPrecision(4)} ${unit}, ${ratio.toFixed(3)} x ${against} (goal ${goal})`
-  )
+const run = async (names, { json, print, load = name => require(path.join(folder, name)) }) => {
+  let missed = 0
+  for (const name of names) {
+    for await (const measured of load(name).rows()) {
+      const row = judge(measured)
+      if (!row.holds) missed++
+      print(json ? JSON.stringify(row) : lineOf(row))
+    }
+  }
+  return missed
 }
 
 async function main() {
   const { values, positionals } = parseArgs({ options: { json: { type: 'boolean' } }, allowPositionals: true })
-  const files = readdirSync(folder).filter(
-    file => positionals.length === 0 || positionals.includes(path.parse(file).name)
-  )
-  if (files.length === 0) throw new Error(`no such bench; there are: ${readdirSync(folder).join(' ')}`)
-  let missed = 0
-  for (const file of files) {
-    for await (const measured of require(path.join(folder, file)).rows()) {
-      const row = judge(measured)
-      if (!row.holds) missed++
-      print(row, values.json)
-    }
-  }
+  const missed = await run(chosen(positionals), { json: Boolean(values.json), print: line => console.log(line) })
   process.exitCode = missed ? 1 : 0
 }
 
-main().catch(error => {
-  console.error(error)
-  process.exitCode = 2
-})
+if (require.main === module) {
+  main().catch(error => {
+    console.error(error)
+    process.exitCode = 2
+  })
+}
+
+module.exports = { chosen, known, run }

@@ -16,6 +16,7 @@ const { createNxPlc } = require('./device/nx-plc')
 const { openChinoRegulator, openNxPlc } = require('./device/open')
 const { openC24Port } = require('./device/open-c24')
 const { openInconLink } = require('./device/open-incon')
+const { predict } = require('./device/predict')
 const { masterIdsOf } = require('./device/settings')
 const { createThrottle } = require('./device/throttle')
 const { csvWarnings, tagsFromCsv, tagsToCsv } = require('./tag/csv')
@@ -61,6 +62,7 @@ module.exports = {
   parseItem,
   parseType,
   payloadOf,
+  predict,
   tagsFromCsv,
   tagsToCsv,
   toBufferMemory

@@ -3,7 +3,7 @@ const { createDevice, deviceSettings } = require('./device-settings')
 const { onStarted } = require('./started')
 
 /** The events that somebody should act on; what comes and goes by itself is for `plc-monitor`. */
-const ADVICE = ['late', 'jammed', 'fixedMasterId', 'slow']
+const ADVICE = ['late', 'jammed', 'fixedMasterId', 'slow', 'overrun']
 
 /** What the line or the device advises, once for each kind: it stands in the log and in the debug sidebar. */
 const adviser = deviceNode => {

@@ -32,7 +32,8 @@ const READING = {
   badValues: choice('omit', 'omit', 'null'),
   ranges: choice('array', 'array', 'values'),
   booleans: choice('boolean', 'boolean', 'number'),
-  report: choice('all', 'all', 'changed', 'allOnChange')
+  report: choice('all', 'all', 'changed', 'allOnChange'),
+  maxSilence: number(0, 0, 86400000)
 }
 
 /** What a node that writes has beside its device. */

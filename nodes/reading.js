@@ -1,6 +1,7 @@
 'use strict'
 const { PlcError, createReport, itemsOf, messagesOf } = require('../lib/index.js')
 const { withCode } = require('./faults')
+const { onStarted } = require('./started')
 
 /** What every node that reads has in common: its list of items, polling, questions by message, and what it sends. */
 
@@ -62,18 +63,39 @@ const summary = results => {
 }
 
 /** Sends results: the first message is the one that asked, so that its other properties go on. */
-const createDelivery = (RED, { settings, deviceNode }) => {
+const createDelivery = (RED, { settings, deviceNode, device }) => {
   const { format, badValues, ranges, booleans } = settings
   const { label, simulated } = deviceNode
   const shape = { format, badValues, ranges, booleans, device: label, simulated }
   const report = createReport(settings)
-  return (results, msg, send) => {
-    const parts = messagesOf(report(results), { ...shape, id: RED.util.generateId() })
+  const deliver = (results, msg, send) => {
+    const parts = messagesOf(report(results, device.time), { ...shape, id: RED.util.generateId() })
     if (parts.length === 0) return
     delete msg.bad
     const carriers = parts.map((_, index) => (index === 0 ? msg : RED.util.cloneMessage(msg)))
     send([parts.map((fields, index) => Object.assign(carriers[index], fields))])
   }
+  return Object.assign(deliver, { reset: report.reset })
+}
+
+/** Calls `again` when a line that was lost is open again. @returns {(line: { state: string }) => void} who is to be told of the line */
+const reconnected = again => {
+  let isLost = false
+  return ({ state }) => {
+    if (state === 'waiting') isLost = true
+    if (state !== 'open' || !isLost) return
+    isLost = false
+    again()
+  }
+}
+
+/** After each deploy: what the polls of a line cost is known when all nodes are made. */
+const adviseOf = (RED, { node, cost }) => {
+  if (!cost) return () => {}
+  return onStarted(RED.events, () => {
+    const { advice } = cost()
+    if (advice) node.warn(advice)
+  })
 }
 
 const takeItems = msg => {
@@ -105,6 +127,7 @@ const choice =
 const startReading = (RED, session, { named = false } = {}) => {
   const { node, settings, device, display } = session
   const deliver = createDelivery(RED, session)
+  session.lineChanged = reconnected(deliver.reset)
   /** @type {any} */
   const fixed = settings.itemsType === 'list' ? sorted(device, itemsOf(settings.items)) : null
   fixed?.problems.forEach(session.warn)
@@ -134,9 +157,14 @@ const startReading = (RED, session, { named = false } = {}) => {
     if (fault) node.error(fault, { device: session.deviceNode.label })
   }
   const polling = fixed && settings.interval > 0
-  const group = { items: fixed?.valid, interval: settings.interval }
+  const group = { items: fixed?.valid, interval: settings.interval, name: node.name || node.id }
   const subscription = polling ? device.subscribe(group, polled) : null
-  return { ask, stop: () => subscription?.stop() }
+  const stopAdvice = adviseOf(RED, { node, cost: subscription && (() => subscription.cost) })
+  const stop = () => {
+    stopAdvice()
+    subscription?.stop()
+  }
+  return { ask, stop }
 }
 
-module.exports = { startReading }
+module.exports = { reconnected, startReading }

@@ -79,14 +79,17 @@ const openSession = (RED, node, { type, config, start, seat = found => found }) 
   const display = statusDisplay(RED, node)
   const report = deployReport(RED, node)
   /** @type {any} */
-  const session = { node, display, warn: report.add, closed: false, fault: null }
+  const session = { node, display, warn: report.add, closed: false, fault: null, lineChanged() {} }
   /** @type {any} */
   let stop
   const attached = () => {
     session.settings = readSettings(type, config)
     session.deviceNode = seat(findDevice(RED, { type, settings: session.settings, node }), session)
     display.simulated(session.deviceNode.simulated)
-    session.device = session.deviceNode.attach(node, line => display.update({ line }))
+    session.device = session.deviceNode.attach(node, line => {
+      display.update({ line })
+      session.lineChanged(line)
+    })
     stop = start(session)
   }
   try {

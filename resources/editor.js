@@ -1,7 +1,12 @@
 // Built by scripts/build-editor.js from scripts/editor and lib. Do not edit.
 "use strict";
 var nxlineSerialPlc = (() => {
+  var __defProp = Object.defineProperty;
   var __getOwnPropNames = Object.getOwnPropertyNames;
+  var __typeError = (msg) => {
+    throw TypeError(msg);
+  };
+  var __defNormalProp = (obj, key, value) => key in obj ? __defProp(obj, key, { enumerable: true, configurable: true, writable: true, value }) : obj[key] = value;
   var __commonJS = (cb, mod) => function __require() {
     try {
       return mod || (0, cb[__getOwnPropNames(cb)[0]])((mod = { exports: {} }).exports, mod), mod.exports;
@@ -9,6 +14,12 @@ var nxlineSerialPlc = (() => {
       throw mod = 0, e;
     }
   };
+  var __publicField = (obj, key, value) => __defNormalProp(obj, typeof key !== "symbol" ? key + "" : key, value);
+  var __accessCheck = (obj, member, msg) => member.has(obj) || __typeError("Cannot " + msg);
+  var __privateGet = (obj, member, getter) => (__accessCheck(obj, member, "read from private field"), getter ? getter.call(obj) : member.get(obj));
+  var __privateAdd = (obj, member, value) => member.has(obj) ? __typeError("Cannot add the same private member more than once") : member instanceof WeakSet ? member.add(obj) : member.set(obj, value);
+  var __privateSet = (obj, member, value, setter) => (__accessCheck(obj, member, "write to private field"), setter ? setter.call(obj, value) : member.set(obj, value), value);
+  var __privateMethod = (obj, member, method) => (__accessCheck(obj, member, "access private method"), method);
 
   // nodes/properties.js
   var require_properties = __commonJS({
@@ -34,7 +45,8 @@ var nxlineSerialPlc = (() => {
         badValues: choice("omit", "omit", "null"),
         ranges: choice("array", "array", "values"),
         booleans: choice("boolean", "boolean", "number"),
-        report: choice("all", "all", "changed", "allOnChange")
+        report: choice("all", "all", "changed", "allOnChange"),
+        maxSilence: number(0, 0, 864e5)
       };
       var WRITING = {
         target: text(),
@@ -1264,6 +1276,13 @@ var nxlineSerialPlc = (() => {
         if (!Number.isFinite(number)) throw bad(name, `${field} is "${text}", not a number`);
         return number;
       };
+      var PERCENT = /^(\d+(?:\.\d+)?)\s*%$/;
+      var deadbandOf = (row, name) => {
+        const [, percent] = PERCENT.exec(textOf(row, "deadband")) ?? [];
+        if (percent === void 0) return numberOf(row, "deadband", { name, fallback: 0 });
+        if (Number(percent) > 100) throw bad(name, `deadband is ${percent} %, 100 % at most`);
+        return Number(percent) === 0 ? 0 : `${Number(percent)}%`;
+      };
       var YES = /* @__PURE__ */ new Set(["true", "1", "yes", "x", "on"]);
       var NO = /* @__PURE__ */ new Set(["", "false", "0", "no", "off"]);
       var booleanOf = (row, field, name) => {
@@ -1297,7 +1316,7 @@ var nxlineSerialPlc = (() => {
           scale: numberOf(row, "scale", { name, fallback: 1 }),
           offset: numberOf(row, "offset", { name, fallback: 0 }),
           unit: textOf(row, "unit"),
-          deadband: numberOf(row, "deadband", { name, fallback: 0 }),
+          deadband: deadbandOf(row, name),
           writable: booleanOf(row, "writable", name),
           min: numberOf(row, "min", { name, fallback: null }),
           max: numberOf(row, "max", { name, fallback: null }),
@@ -1985,6 +2004,7 @@ var nxlineSerialPlc = (() => {
     "lib/device/options.js"(exports, module) {
       "use strict";
       var { PlcError } = require_error();
+      var TURNAROUND = 5;
       var blank = (value) => value === void 0 || value === null || typeof value === "string" && value.trim() === "";
       var textOf = (setting, value) => {
         if (!["object", "function", "symbol"].includes(typeof value)) return String(value).trim();
@@ -2021,7 +2041,7 @@ var nxlineSerialPlc = (() => {
         const reason = `it is less than the time until the first probe, ${probeFirst}`;
         throw new PlcError("BAD_SETTING", { setting: "probeMost", value: probeMost, reason });
       };
-      module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, textOf, wholeNumber };
+      module.exports = { TURNAROUND, blank, choice, isOn, nameOf, readHealth, readRanges, textOf, wholeNumber };
     }
   });
 
@@ -2327,6 +2347,269 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/plan/model.js
+  var require_model2 = __commonJS({
+    "lib/plan/model.js"(exports, module) {
+      "use strict";
+      var FRAME_COST = 60;
+      var LAST_MIXED = 16383;
+      var sortedSpans = (spans) => [...spans].sort((a, b) => a.start - b.start);
+      var firstAbove = (sorted, value) => {
+        let low = 0;
+        let high = sorted.length;
+        while (low < high) {
+          const middle = low + high >> 1;
+          if (sorted[middle] > value) high = middle;
+          else low = middle + 1;
+        }
+        return low;
+      };
+      var SIZE = { bit: 16, word: 1 };
+      var rulesOf = (kind, { bounds = [], holes = [] }) => ({
+        bounds: [...new Set(bounds)].map((bound) => bound * SIZE[kind]).sort((a, b) => a - b),
+        holes: sortedSpans(holes.filter((hole) => hole.kind === kind))
+      });
+      var wordsOf = ({ start, end }) => ({ start: start >> 4, end: (end - 1 >> 4) + 1 });
+      var joined = (intervals) => {
+        const all = [];
+        for (const [from, to] of [...intervals].sort((a, b) => a[0] - b[0])) {
+          const last = all.at(-1);
+          if (last && from <= last[1]) last[1] = Math.max(last[1], to);
+          else all.push([from, to]);
+        }
+        return all;
+      };
+      var addressesIn = ({ start, end }) => Array.from({ length: end - start }, (_, at) => start + at);
+      var mixedWords = (groups, isJoint) => {
+        const words = /* @__PURE__ */ new Set();
+        const single = /* @__PURE__ */ new Map();
+        for (const group of groups) {
+          const span = group.kind === "word" ? group : wordsOf(group);
+          const whole = group.kind === "word" || group.end - group.start > 1 && isJoint(span);
+          if (whole) for (const word of addressesIn(span)) words.add(word);
+          else if (isJoint(span)) single.set(span.start, [...single.get(span.start) ?? [], group]);
+        }
+        for (const [word, own] of single) if (own.length > 1 || own[0].start > LAST_MIXED) words.add(word);
+        return words;
+      };
+      var none = () => false;
+      var mixedAddresses = (groups, isJoint) => {
+        const [{ kind: only, start: first, end: last }] = groups;
+        if (groups.length === 1 && last - first === 1 && first <= LAST_MIXED)
+          return { addresses: [{ kind: only, address: first }], through: none };
+        const words = mixedWords(groups, isJoint);
+        const through = (group) => {
+          const span = wordsOf(group);
+          return group.kind === "bit" && isJoint(span) && addressesIn(span).every((word) => words.has(word));
+        };
+        const bits = new Set(groups.filter((group) => group.kind === "bit" && !through(group)).flatMap(addressesIn));
+        const list = (kind, addresses) => [...addresses].sort((a, b) => a - b).map((address) => ({ kind, address }));
+        return { addresses: [...list("bit", bits), ...list("word", words)], through };
+      };
+      var QUERY = 3;
+      var _limits, _rules, _joint, _Model_instances, sizeOf_fn, crosses_fn, priced_fn, block_fn, asWords_fn, asBits_fn, asMixed_fn, fits_fn;
+      var Model = class {
+        /** @param {import('./reads').Limits} limits */
+        constructor(limits) {
+          __privateAdd(this, _Model_instances);
+          __privateAdd(this, _limits);
+          __privateAdd(this, _rules);
+          __privateAdd(this, _joint);
+          /** Whether these words and their bits are one memory. @param {{ start: number, end: number }} span */
+          __publicField(this, "isJoint", ({ start, end }) => __privateGet(this, _joint).some(([from, to]) => from <= start && end <= to));
+          const { readBits, readWords, readMixed, info, again, frameCost = FRAME_COST } = limits;
+          __privateSet(this, _limits, limits);
+          __privateSet(this, _joint, joined(limits.joint ?? []));
+          __privateSet(this, _rules, { bit: rulesOf("bit", limits), word: rulesOf("word", limits) });
+          this.most = { bit: Math.min(readBits, info), word: Math.min(readWords, info >> 1) };
+          this.mostMixed = Math.min(readMixed, info >> 1);
+          this.repeats = again !== void 0;
+          this.frameCost = frameCost;
+          this.repeatCost = again ?? Infinity;
+          this.queryOfBlock = QUERY;
+        }
+        /** What a block costs, both ways. @param {'bit'|'word'} kind @param {number} count */
+        blockCost(kind, count) {
+          return this.frameCost + QUERY + __privateMethod(this, _Model_instances, sizeOf_fn).call(this, kind, count);
+        }
+        /** Whether what lies between two values may be read with them: nobody asked for it. @param {'bit'|'word'} kind */
+        mayBridge(kind, from, to) {
+          if (from >= to) return true;
+          if (__privateGet(this, _limits).bridge === false) return false;
+          return !__privateGet(this, _rules)[kind].holes.some(({ start, end }) => start < to && from < end);
+        }
+        /** The first border after an address: areas need not be one memory. @param {'bit'|'word'} kind @param {number} start */
+        borderAfter(kind, start) {
+          const { bounds } = __privateGet(this, _rules)[kind];
+          return bounds[firstAbove(bounds, start)] ?? Infinity;
+        }
+        /** What values take in a mixed request: addresses and bytes of the answer; null: it cannot hold them. @param {Group[]} groups */
+        mixedShare(groups) {
+          const { addresses } = mixedAddresses(groups, this.isJoint);
+          return __privateMethod(this, _Model_instances, fits_fn).call(this, addresses) ? { count: addresses.length, answer: answerOf(addresses) } : null;
+        }
+        /** All the ways to read these values with one request. @param {Group[]} groups @returns {Frame[]} */
+        frames(groups) {
+          return (
+            /** @type {any[]} */
+            [__privateMethod(this, _Model_instances, asBits_fn).call(this, groups), __privateMethod(this, _Model_instances, asWords_fn).call(this, groups), __privateMethod(this, _Model_instances, asMixed_fn).call(this, groups)].filter(Boolean)
+          );
+        }
+      };
+      _limits = new WeakMap();
+      _rules = new WeakMap();
+      _joint = new WeakMap();
+      _Model_instances = new WeakSet();
+      sizeOf_fn = function(kind, count) {
+        const { unit = 1, bitBytes = 1, scale = 1 } = __privateGet(this, _limits);
+        return scale * (kind === "word" ? count * 2 : Math.ceil(Math.ceil(count / unit) * unit * bitBytes));
+      };
+      /** Whether a block goes over a border on which none of its values stands. */
+      crosses_fn = function(kind, { start, end }, spans) {
+        for (let border = this.borderAfter(kind, start); border < end; border = this.borderAfter(kind, border)) {
+          if (!spans.some((span) => span.start < border && border < span.end)) return true;
+        }
+        return false;
+      };
+      priced_fn = function(frame, query, answer) {
+        const cost = this.frameCost + query + answer;
+        return { ...frame, cost, again: Math.min(cost, this.repeatCost + answer) };
+      };
+      block_fn = function(kind, spans, groups) {
+        const sorted = sortedSpans(spans);
+        const { start } = sorted[0];
+        let { end } = sorted[0];
+        for (const span of sorted) {
+          if (!this.mayBridge(kind, end, span.start)) return null;
+          end = Math.max(end, span.end);
+        }
+        if (end - start > this.most[kind] || __privateMethod(this, _Model_instances, crosses_fn).call(this, kind, { start, end }, spans)) return null;
+        const through = (group) => group.kind !== kind;
+        const frame = { form: "block", span: { kind, start, end }, groups, through };
+        return __privateMethod(this, _Model_instances, priced_fn).call(this, frame, QUERY, __privateMethod(this, _Model_instances, sizeOf_fn).call(this, kind, end - start));
+      };
+      asWords_fn = function(groups) {
+        const spans = groups.map((group) => group.kind === "word" ? group : wordsOf(group));
+        const possible = groups.every(({ kind }, at) => kind === "word" || this.isJoint(spans[at]));
+        return possible ? __privateMethod(this, _Model_instances, block_fn).call(this, "word", spans, groups) : null;
+      };
+      asBits_fn = function(groups) {
+        return groups.every(({ kind }) => kind === "bit") ? __privateMethod(this, _Model_instances, block_fn).call(this, "bit", groups, groups) : null;
+      };
+      asMixed_fn = function(groups) {
+        if (this.mostMixed < 2) return null;
+        const { addresses, through } = mixedAddresses(groups, this.isJoint);
+        if (addresses.length < 2 || !__privateMethod(this, _Model_instances, fits_fn).call(this, addresses)) return null;
+        return __privateMethod(this, _Model_instances, priced_fn).call(this, { form: "mixed", addresses, groups, through }, 2 * addresses.length, answerOf(addresses));
+      };
+      fits_fn = function(addresses) {
+        return addresses.length <= this.mostMixed && addresses.every(({ address }) => address <= LAST_MIXED);
+      };
+      var answerOf = (addresses) => addresses.reduce((sum, { kind }) => sum + (kind === "word" ? 2 : 1), 0);
+      var cycleCost = (frames) => {
+        const total = frames.reduce((sum, { cost }) => sum + cost, 0);
+        if (frames.length === 1) return frames[0].again;
+        const saved = frames.map(({ cost, again }) => cost - again).sort((a, b) => b - a);
+        return total - ((saved[0] ?? 0) + (saved[1] ?? 0)) / 2;
+      };
+      module.exports = { LAST_MIXED, Model, cycleCost, wordsOf };
+    }
+  });
+
+  // lib/plan/together.js
+  var require_together = __commonJS({
+    "lib/plan/together.js"(exports, module) {
+      "use strict";
+      var SHARE = 0.5;
+      var together = (groups, msOf) => {
+        let rest = [...groups].sort((a, b) => a.interval - b.interval);
+        const parts = [];
+        while (rest.length > 0) {
+          const part = [rest[0]];
+          const left = [];
+          for (const group of rest.slice(1)) {
+            if (msOf([...part, group]) <= SHARE * part[0].interval) part.push(group);
+            else left.push(group);
+          }
+          parts.push(part);
+          rest = left;
+        }
+        return parts;
+      };
+      module.exports = { SHARE, together };
+    }
+  });
+
+  // lib/plan/prediction.js
+  var require_prediction = __commonJS({
+    "lib/plan/prediction.js"(exports, module) {
+      "use strict";
+      var { cycleCost } = require_model2();
+      var { together } = require_together();
+      var MOST_TICKS = 1e3;
+      var MOST_INTERVALS = 50;
+      var families = (intervals) => {
+        const all = [];
+        for (const interval of intervals) {
+          const own = all.find(([first]) => interval % first === 0);
+          if (own && intervals.length <= MOST_INTERVALS) own.push(interval);
+          else all.push([interval]);
+        }
+        return all;
+      };
+      var commonMultiple = (a, b) => {
+        let [x, y] = [a, b];
+        while (y > 0) [x, y] = [y, x % y];
+        return a / x * b;
+      };
+      var moments = (family) => {
+        const [first] = family;
+        const ticks = Math.min(MOST_TICKS, family.map((each) => Math.round(each / first)).reduce(commonMultiple, 1));
+        const sets = /* @__PURE__ */ new Map();
+        for (let tick = 0; tick < ticks; tick++) {
+          const due = family.filter((interval) => tick % Math.round(interval / first) === 0);
+          const key = due.join();
+          const set = sets.get(key) ?? { intervals: due, times: 0 };
+          set.times++;
+          sets.set(key, set);
+        }
+        return [...sets.values()].map(({ intervals, times }) => ({ intervals, every: first * ticks / times }));
+      };
+      var sum = (list, of) => list.reduce((total, each) => total + of(each), 0);
+      var timesOf = (requests, { character, gap, silences }, again) => {
+        if (requests.length === 0) return { ms: 0, busy: 0 };
+        const isRepeated = again && requests.some((request) => request.again < request.cost);
+        const bytes = isRepeated ? cycleCost(
+          /** @type {any} */
+          requests
+        ) : sum(requests, ({ cost }) => cost);
+        const ms = bytes * character;
+        const frames = requests.length * silences - (isRepeated ? silences - 1 : 0);
+        return { ms, busy: Math.max(0, ms - frames * gap) };
+      };
+      var loadOf = (groups, { requestsOf, ...wire }) => {
+        const byInterval = new Map(groups.map((group) => [group.interval, group]));
+        const plan = (parts) => requestsOf(parts.length === 1 ? parts[0].points : parts.flatMap(({ points }) => points));
+        const msOf = (parts) => timesOf(plan(parts), wire, false).ms;
+        const due = families([...byInterval.keys()].sort((a, b) => a - b)).flatMap(moments);
+        const asked = due.flatMap(
+          ({ intervals, every }) => together(
+            intervals.map((interval) => byInterval.get(interval)),
+            msOf
+          ).map((parts) => ({ parts, every }))
+        );
+        const cycles = asked.map(({ parts, every }) => {
+          const requests = plan(parts);
+          const intervals = parts.map(({ interval }) => interval);
+          return { intervals, every, requests: requests.length, ...timesOf(requests, wire, asked.length === 1) };
+        });
+        const percent = (of) => 100 * sum(cycles, (cycle) => of(cycle) / cycle.every);
+        return { percent: percent(({ ms }) => ms), busyPercent: percent(({ busy }) => busy), cycles };
+      };
+      module.exports = { loadOf };
+    }
+  });
+
   // lib/plan/blocks.js
   var require_blocks = __commonJS({
     "lib/plan/blocks.js"(exports, module) {
@@ -2391,6 +2674,420 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/plan/exact.js
+  var require_exact = __commonJS({
+    "lib/plan/exact.js"(exports, module) {
+      "use strict";
+      var MOST_EXACT = 9;
+      var SHARES = [0, 0.5, 1];
+      var cheapest = (frames, share) => {
+        let best = { cost: Infinity, frame: null };
+        for (const frame of frames) {
+          const cost = frame.cost - share * (frame.cost - frame.again);
+          if (cost < best.cost) best = { cost, frame };
+        }
+        return best;
+      };
+      var framesOfSubsets = (groups, model) => {
+        const all = [null];
+        for (let mask = 1; mask < 1 << groups.length; mask++) {
+          const frames = model.frames(groups.filter((_, at) => mask & 1 << at));
+          all.push(SHARES.map((share) => cheapest(frames, share)));
+        }
+        return all;
+      };
+      var tabulate = (subsets, ends) => {
+        const table = Array.from({ length: ends + 1 }, () => subsets.map(() => ({ cost: Infinity, part: 0, ends: 0 })));
+        table[0][0].cost = 0;
+        for (let mask = 1; mask < subsets.length; mask++) {
+          const low = mask & -mask;
+          for (let part = mask; part > 0; part = part - 1 & mask) {
+            if (!(part & low)) continue;
+            for (let used = 0; used <= ends; used++) {
+              for (let own = 0; own <= Math.min(1, used); own++) {
+                const cost = table[used - own][mask ^ part].cost + subsets[part][own].cost;
+                if (cost < table[used][mask].cost) table[used][mask] = { cost, part, ends: own };
+              }
+            }
+          }
+        }
+        return table;
+      };
+      var collect = (table, subsets, { mask, used }) => {
+        const frames = [];
+        while (mask > 0) {
+          const { part, ends } = table[used][mask];
+          frames.push(subsets[part][ends].frame);
+          mask ^= part;
+          used -= ends;
+        }
+        return frames;
+      };
+      var exactPlan = (groups, model) => {
+        if (groups.length === 0) return [];
+        const subsets = framesOfSubsets(groups, model);
+        const mask = subsets.length - 1;
+        const used = model.repeats ? 2 : 0;
+        const table = tabulate(subsets, used);
+        const alone = subsets[mask][2];
+        if (model.repeats && alone.frame && alone.cost <= table[used][mask].cost) return [alone.frame];
+        return collect(table, subsets, { mask, used });
+      };
+      module.exports = { MOST_EXACT, exactPlan };
+    }
+  });
+
+  // lib/plan/merge.js
+  var require_merge = __commonJS({
+    "lib/plan/merge.js"(exports, module) {
+      "use strict";
+      var { cycleCost } = require_model2();
+      var MOST_FRAMES = 40;
+      var joined = (one, other, model) => model.frames([...one.groups, ...other.groups]).filter(({ cost }) => cost < one.cost + other.cost);
+      var better = (frames, model) => {
+        let least = cycleCost(frames);
+        let best = null;
+        for (let one = 0; one < frames.length; one++) {
+          for (let other = one + 1; other < frames.length; other++) {
+            for (const frame of joined(frames[one], frames[other], model)) {
+              const plan = [...frames.filter((_, at) => at !== one && at !== other), frame];
+              const cost = cycleCost(plan);
+              if (cost >= least) continue;
+              least = cost;
+              best = plan;
+            }
+          }
+        }
+        return best;
+      };
+      var merged = (frames, model) => {
+        if (frames.length > MOST_FRAMES) return frames;
+        const next = better(frames, model);
+        return next ? merged(next, model) : frames;
+      };
+      module.exports = { merged };
+    }
+  });
+
+  // lib/plan/chunks.js
+  var require_chunks = __commonJS({
+    "lib/plan/chunks.js"(exports, module) {
+      "use strict";
+      var { wordsOf } = require_model2();
+      var placed = (group, model) => {
+        const span = group.kind === "word" ? group : wordsOf(group);
+        const among = group.kind === "word" || model.isJoint(span);
+        const { start, end } = among ? span : group;
+        return { space: among ? "word" : "bit", start, end, group };
+      };
+      var bitsOf = (groups) => groups.every(({ kind }) => kind === "bit") ? { first: Math.min(...groups.map(({ start }) => start)), last: Math.max(...groups.map(({ end }) => end)) } : null;
+      var WORK = 5e5;
+      var grainOf = (places, most) => {
+        const span = places[places.length - 1].end - places[0].start;
+        const reach = Math.min(places.length, most * places.length / span);
+        return Math.min(most, Math.ceil(Math.sqrt(places.length * reach / WORK)));
+      };
+      var chunksOf = (groups, model, space) => {
+        const places = groups.map((group) => placed(group, model)).filter((place) => place.space === space);
+        if (places.length === 0) return [];
+        places.sort((a, b) => a.start - b.start || a.end - b.end);
+        const grain = grainOf(places, model.most[space]);
+        const merged = [];
+        for (const { start, end, group } of places) {
+          const last = merged.at(-1);
+          const most = last && start < last.end ? model.most[space] : grain;
+          if (last && start <= last.end && Math.max(end, last.end) - last.start <= most) {
+            last.end = Math.max(last.end, end);
+            last.groups.push(group);
+          } else merged.push({ space, start, end, groups: [group] });
+        }
+        return merged.map((chunk) => ({ ...chunk, bits: bitsOf(chunk.groups), share: model.mixedShare(chunk.groups) }));
+      };
+      module.exports = { chunksOf };
+    }
+  });
+
+  // lib/plan/table.js
+  var require_table = __commonJS({
+    "lib/plan/table.js"(exports, module) {
+      "use strict";
+      var costsFrom = (chunks, first, { model, costs }) => {
+        const { most } = model;
+        const { space, start, bits } = chunks[first];
+        const border = model.borderAfter(space, start);
+        let end = start;
+        let onlyBits = bits !== null;
+        for (let at = first; at < chunks.length && chunks[at].space === space; at++) {
+          const chunk = chunks[at];
+          const apart = at > first && (!model.mayBridge(space, end, chunk.start) || chunk.end > Math.max(border, end));
+          end = Math.max(end, chunk.end);
+          if (apart || end - start > most[space]) return;
+          onlyBits && (onlyBits = chunk.bits !== null);
+          const span = onlyBits ? chunk.bits.last - bits.first : Infinity;
+          const asBits = span <= most.bit ? model.blockCost("bit", span) : Infinity;
+          costs.push(Math.min(model.blockCost(space, end - start), asBits));
+        }
+      };
+      var chunkTable = (chunks, model) => {
+        const costs = [];
+        const first = new Int32Array(chunks.length + 1);
+        for (let at = 0; at < chunks.length; at++) {
+          costsFrom(chunks, at, { model, costs });
+          first[at + 1] = costs.length;
+        }
+        const numbers = (of) => Int32Array.from(chunks, ({ share }) => share ? of(share) : 0);
+        return {
+          count: chunks.length,
+          shares: numbers(({ count }) => count),
+          answers: numbers(({ answer }) => answer),
+          costs: Float64Array.from(costs),
+          first
+        };
+      };
+      module.exports = { chunkTable };
+    }
+  });
+
+  // lib/plan/priced.js
+  var require_priced = __commonJS({
+    "lib/plan/priced.js"(exports, module) {
+      "use strict";
+      var { chunksOf } = require_chunks();
+      var { cycleCost } = require_model2();
+      var { chunkTable } = require_table();
+      var PRICES = [-2, -1.5, -1, -0.5, 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1, 1.5, 2, 3, 5, 8, 12, Infinity];
+      var STEPS = 8;
+      var WORK = 2e6;
+      var MIXED = -1;
+      var choose = ({ count, shares, answers, costs, first }, price) => {
+        const best = new Float64Array(count + 1).fill(Infinity);
+        const from = new Int32Array(count + 1);
+        best[0] = 0;
+        for (let at = 0; at < count; at++) {
+          const here = best[at];
+          const mixed = shares[at] > 0 ? here + answers[at] + shares[at] * (2 + price) : Infinity;
+          if (mixed < best[at + 1]) {
+            best[at + 1] = mixed;
+            from[at + 1] = MIXED;
+          }
+          const last = first[at + 1];
+          for (let place = first[at], next = at + 1; place < last; place++, next++) {
+            const cost = here + costs[place];
+            if (cost <= best[next]) {
+              best[next] = cost;
+              from[next] = at;
+            }
+          }
+        }
+        return from;
+      };
+      var trace = ({ count, costs, first }, from) => {
+        const mixed = [];
+        const blocks = [];
+        for (let to = count; to > 0; ) {
+          const start = from[to] === MIXED ? to - 1 : from[to];
+          if (from[to] === MIXED) mixed.push(start);
+          else blocks.push({ from: start, to, cost: costs[first[start] + to - start - 1] });
+          to = start;
+        }
+        return { mixed, blocks };
+      };
+      var roomOf = (mixed, { shares }) => mixed.reduce((total, at) => total + shares[at], 0);
+      var pack = (mixed, { shares }, most) => {
+        const plain = mixed.every((at) => shares[at] === 1);
+        const bins = [];
+        let open = 0;
+        for (const at of plain ? mixed : [...mixed].sort((a, b) => shares[b] - shares[a])) {
+          let bin;
+          for (let index = open; index < bins.length && !bin; index++) {
+            if (bins[index].used + shares[at] <= most) bin = bins[index];
+          }
+          if (!bin) bins.push(bin = { used: 0, chunks: [] });
+          bin.used += shares[at];
+          bin.chunks.push(at);
+          while (open < bins.length && bins[open].used === most) open++;
+        }
+        return bins.map(({ chunks }) => chunks);
+      };
+      var range = (from, to) => Array.from({ length: to - from }, (_, at) => from + at);
+      var fill = ({ mixed, blocks }, table, most) => {
+        let room = pack(mixed, table, most).length * most - roomOf(mixed, table);
+        if (room === 0) return { mixed, blocks };
+        const { shares, answers } = table;
+        const gaining = [];
+        for (const block of blocks) {
+          let count = 0;
+          let gain = block.cost;
+          for (let at = block.from; at < block.to && gain > 0; at++) {
+            count += shares[at];
+            gain = shares[at] === 0 ? 0 : gain - answers[at] - 2 * shares[at];
+          }
+          if (gain > 0 && count <= room) gaining.push({ block, gain, count });
+        }
+        const moved = /* @__PURE__ */ new Set();
+        for (const { block, count } of gaining.sort((a, b) => b.gain / b.count - a.gain / a.count)) {
+          if (count > room) continue;
+          room -= count;
+          moved.add(block);
+        }
+        const more = [...moved].flatMap(({ from, to }) => range(from, to));
+        return { mixed: [...mixed, ...more], blocks: blocks.filter((block) => !moved.has(block)) };
+      };
+      var priced = (chosen, table, model) => {
+        const { mixed, blocks } = fill(chosen, table, model.mostMixed);
+        const { frameCost, repeatCost, queryOfBlock } = model;
+        const sets = blocks.map(({ from, to, cost }) => {
+          const again = Math.min(cost, cost - frameCost - queryOfBlock + repeatCost);
+          return { chunks: range(from, to), cost, again };
+        });
+        for (const chunks of pack(mixed, table, model.mostMixed)) {
+          const answer = chunks.reduce((total, at) => total + table.answers[at], 0);
+          const cost = frameCost + 2 * roomOf(chunks, table) + answer;
+          sets.push({ chunks, cost, again: Math.min(cost, repeatCost + answer) });
+        }
+        return sets;
+      };
+      var createSearch = (table, model) => {
+        const best = { sets: [], cost: Infinity, room: 0 };
+        return {
+          best,
+          /** @returns {number} addresses that go into mixed requests at this price */
+          attempt: (price) => {
+            const chosen = trace(table, choose(table, price));
+            const room = roomOf(chosen.mixed, table);
+            const sets = priced(chosen, table, model);
+            const cost = cycleCost(sets);
+            if (cost < best.cost) Object.assign(best, { sets, cost, room });
+            return room;
+          }
+        };
+      };
+      var bisect = (search, target) => {
+        let low = PRICES[0];
+        let high = 16;
+        for (let step = 0; step < STEPS; step++) {
+          const price = (low + high) / 2;
+          if (search.attempt(price) > target) low = price;
+          else high = price;
+        }
+      };
+      var explore = (search, { steps, mostMixed }) => {
+        if (mostMixed < 2) return search.attempt(Infinity);
+        const tries = Math.max(4, Math.min(PRICES.length, Math.floor(WORK / steps)));
+        const stride = (PRICES.length - 1) / (tries - 1);
+        for (let at = 0; at < tries; at++) search.attempt(PRICES[Math.round(at * stride)]);
+        const full = Math.round(search.best.room / mostMixed);
+        const around = [full, full - 1, full + 1].slice(0, Math.max(0, Math.floor((WORK / steps - tries) / STEPS)));
+        for (const requests of around) if (requests > 0) bisect(search, requests * mostMixed);
+      };
+      var cheapest = (frames, key) => frames.reduce((best, frame) => frame[key] < best[key] ? frame : best);
+      var framesOf = (sets, model, key) => sets.flatMap((groups) => {
+        const frames = model.frames(groups.flat());
+        if (frames.length > 0) return [cheapest(frames, key)];
+        return groups.map((own) => cheapest(model.frames(own), key));
+      });
+      var pricedPlan = (groups, model) => {
+        const chunks = [...chunksOf(groups, model, "word"), ...chunksOf(groups, model, "bit")];
+        const table = chunkTable(chunks, model);
+        const search = createSearch(table, model);
+        explore(search, { steps: table.costs.length + table.count, mostMixed: model.mostMixed });
+        const sets = search.best.sets.map((set) => set.chunks.map((at) => chunks[at].groups));
+        const plans = (model.repeats ? ["cost", "again"] : ["cost"]).map((key) => framesOf(sets, model, key));
+        return plans.reduce((best, plan) => cycleCost(plan) < cycleCost(best) ? plan : best);
+      };
+      module.exports = { pricedPlan };
+    }
+  });
+
+  // lib/plan/reads.js
+  var require_reads = __commonJS({
+    "lib/plan/reads.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { blocksOf, groupsOf } = require_blocks();
+      var { MOST_EXACT, exactPlan } = require_exact();
+      var { merged } = require_merge();
+      var { LAST_MIXED, Model, cycleCost } = require_model2();
+      var { pricedPlan } = require_priced();
+      var MOST_GROUPS_MERGED = 300;
+      var servedBy = ({ groups, through }, placeOf) => groups.flatMap((group) => {
+        const { kind, start, end } = group;
+        const place = through(group) ? { at: placeOf("word", start >> 4), bit: start & 15 } : { at: placeOf(kind, start) };
+        return group.points.map((point) => ({ point, ...place, count: end - start }));
+      });
+      var shapeOf = ({ form, span, addresses }) => {
+        if (form === "mixed") return { ask: "readMixed", addresses };
+        const { kind, start, end } = span;
+        return { ask: kind === "bit" ? "readBits" : "readWords", base: start, count: end - start };
+      };
+      var placesOf = ({ form, span, addresses }) => {
+        if (form === "block") return (_kind, address) => address - span.start;
+        const places = new Map(addresses.map(({ kind, address }, at) => [kind + address, at]));
+        return (kind, address) => places.get(kind + address);
+      };
+      var requestOf = (frame) => {
+        const { cost, again } = frame;
+        return (
+          /** @type {any} */
+          { ...shapeOf(frame), points: servedBy(frame, placesOf(frame)), cost, again }
+        );
+      };
+      var groupsOfKind = (points, kind) => groupsOf(
+        points.map(({ kind: each, address, count = 1 }, point) => ({ kind: each, address, count, point })).filter((point) => point.kind === kind)
+      );
+      var checkGroups = (groups, model) => {
+        for (const group of groups) {
+          const { kind, start, end } = group;
+          if (end - start === 1 || model.frames([group]).length > 0) continue;
+          throw new PlcError("FRAME_TOO_LONG", { what: `one value of ${kind}s`, got: end - start, most: model.most[kind] });
+        }
+      };
+      var plainPlan = (groups, model, bounds = []) => (
+        /** @type {const} */
+        ["word", "bit"].flatMap((kind) => {
+          const own = groups.filter((group) => group.kind === kind);
+          const most = model.most[kind];
+          if (own.some(({ start, end }) => end - start > most)) return [];
+          const blocks = blocksOf(own, { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
+          return blocks.map((block) => model.frames(block.groups)[0]);
+        })
+      );
+      var servesAll = (frames, groups) => frames.reduce((sum, frame) => sum + frame.groups.length, 0) === groups.length;
+      var RANK = { word: 0, bit: 1, mixed: 2 };
+      var rankOf = ({ form, span }) => RANK[form === "mixed" ? form : span.kind];
+      var startOf = ({ form, span, addresses }) => form === "mixed" ? addresses[0].address : span.start;
+      var byAddress = (frames) => [...frames].sort((a, b) => rankOf(a) - rankOf(b) || startOf(a) - startOf(b));
+      var ordered = (frames) => {
+        const [first, last, ...others] = [...frames].sort((a, b) => b.cost - b.again - (a.cost - a.again));
+        return last ? [first, ...others, last] : frames;
+      };
+      var bestPlan = (groups, model, limits) => {
+        if (groups.length <= MOST_EXACT) return exactPlan(groups, model);
+        const found = pricedPlan(groups, model);
+        const plain = plainPlan(groups, model, limits.bounds);
+        const plans = servesAll(plain, groups) ? [plain] : [];
+        plans.push(groups.length <= MOST_GROUPS_MERGED ? merged(found, model) : found);
+        return plans.reduce((best, plan) => cycleCost(plan) < cycleCost(best) ? plan : best);
+      };
+      var planReads = (points, limits) => {
+        const groups = [...groupsOfKind(points, "word"), ...groupsOfKind(points, "bit")];
+        if (groups.length === 0) return [];
+        const model = new Model(limits);
+        checkGroups(groups, model);
+        const frames = bestPlan(groups, model, limits);
+        return (model.repeats ? ordered(frames) : byAddress(frames)).map(requestOf);
+      };
+      var servedValues = (answer, { at, count, bit }) => {
+        if (bit === void 0) return answer.slice(at, at + count);
+        return Array.from({ length: count }, (_, step) => {
+          const place = bit + step;
+          return Boolean(Number(answer[at + (place >> 4)]) >> (place & 15) & 1);
+        });
+      };
+      module.exports = { LAST_MIXED, planReads, servedValues };
+    }
+  });
+
   // lib/plan/share.js
   var require_share = __commonJS({
     "lib/plan/share.js"(exports, module) {
@@ -2447,69 +3144,6 @@ var nxlineSerialPlc = (() => {
       };
       var partFits = (part, mixed) => itemsOf(part) <= mixed.items && mixed.size(part) <= mixed.bytes;
       module.exports = { share };
-    }
-  });
-
-  // lib/plan/reads.js
-  var require_reads = __commonJS({
-    "lib/plan/reads.js"(exports, module) {
-      "use strict";
-      var { blocksOf, groupsOf, partsOf } = require_blocks();
-      var { share } = require_share();
-      var LAST_MIXED = 16383;
-      var FRAME_COST = 60;
-      var servedBy = (groups, placeOf) => groups.flatMap((group) => group.points.map((point) => ({ point, at: placeOf(group), count: group.end - group.start })));
-      var ownRequest = ({ kind, start, end, groups }) => ({
-        ask: kind === "bit" ? "readBits" : "readWords",
-        base: start,
-        count: end - start,
-        points: servedBy(groups, (group) => group.start - start)
-      });
-      var sharedRequest = (parts) => {
-        const places = /* @__PURE__ */ new Map();
-        for (const { kind, start, end } of parts) {
-          for (let address = start; address < end; address++) {
-            const key = `${kind}${address}`;
-            if (!places.has(key)) places.set(key, { at: places.size, kind, address });
-          }
-        }
-        const addresses = [...places.values()].map(({ kind, address }) => ({ kind, address }));
-        const placeOf = (group) => places.get(`${group.kind}${group.start}`).at;
-        return {
-          ask: "readMixed",
-          addresses,
-          points: servedBy(
-            parts.flatMap((part) => part.groups),
-            placeOf
-          )
-        };
-      };
-      var blocksFor = (points, kind, limits) => {
-        const { readBits, readWords, info, bounds = [] } = limits;
-        const most = kind === "bit" ? Math.min(readBits, info) : Math.min(readWords, info >> 1);
-        const chosen = points.map(({ kind: each, address, count = 1 }, point) => ({ kind: each, address, count, point })).filter((point) => point.kind === kind);
-        return blocksOf(groupsOf(chosen), { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
-      };
-      var items = ({ start, end }) => end - start;
-      var planReads = (points, limits) => {
-        const blocks = [...blocksFor(points, "word", limits), ...blocksFor(points, "bit", limits)];
-        const most = Math.min(limits.readMixed, limits.info >> 1);
-        const { own, shared } = share(blocks, {
-          mixed: {
-            items: most,
-            bytes: 2 * most,
-            last: { bit: LAST_MIXED, word: LAST_MIXED },
-            size: (block) => 2 * items(block)
-          },
-          frameCost: limits.frameCost ?? FRAME_COST,
-          // the third byte is left out, so that a mixed request for one address is never the cheaper one
-          ownCost: (block) => 2 + items(block) * (block.kind === "bit" ? 1 : 2),
-          sharedCost: (block) => items(block) * (block.kind === "bit" ? 3 : 4),
-          partsOf
-        });
-        return [...own.map(ownRequest), ...shared.map(sharedRequest)];
-      };
-      module.exports = { LAST_MIXED, planReads };
     }
   });
 
@@ -2600,7 +3234,8 @@ var nxlineSerialPlc = (() => {
       var { planReads } = require_reads();
       var { planRounds, roundsOf } = require_writes();
       var WIDE = 1048576;
-      var limitsOf = ({ read, write }) => ({
+      var limitsOf = ({ read, write, unit, frameCost, scale }) => ({
+        ...{ unit, frameCost, scale, bitBytes: 1 / 8 },
         readBits: read,
         readWords: read,
         readMixed: 0,
@@ -2609,12 +3244,13 @@ var nxlineSerialPlc = (() => {
         writeMixed: 0,
         info: WIDE
       });
+      var holesIn = ({ kind, from, to }, holes = []) => holes.filter((hole) => hole.kind === kind && from <= hole.start && hole.start < to);
       var within = ({ kind, from, to }, points) => points.map((point, index) => ({ point, index })).filter(({ point }) => point.kind === kind && from <= point.address && point.address < to);
-      var planTables = (points, tables) => tables.flatMap((table) => {
+      var planTables = (points, tables, { holes } = {}) => tables.flatMap((table) => {
         const own = within(table, points);
         const requests = planReads(
           own.map(({ point }) => point),
-          limitsOf(table)
+          { ...limitsOf(table), holes: holesIn(table, holes) }
         );
         return requests.map((request) => ({
           ...request,
@@ -2656,10 +3292,12 @@ var nxlineSerialPlc = (() => {
   var require_plan = __commonJS({
     "lib/plan/index.js"(exports, module) {
       "use strict";
-      var { planReads } = require_reads();
+      var { loadOf } = require_prediction();
+      var { planReads, servedValues } = require_reads();
       var { planTableWrites, planTables } = require_tables();
+      var { together } = require_together();
       var { planWrites } = require_writes();
-      module.exports = { planReads, planTableWrites, planTables, planWrites };
+      module.exports = { loadOf, planReads, planTableWrites, planTables, planWrites, servedValues, together };
     }
   });
 
@@ -2673,7 +3311,7 @@ var nxlineSerialPlc = (() => {
       var { nxNotation } = require_nx_notation();
       var { describeAddress } = require_address2();
       var { planReads, planWrites } = require_plan();
-      var { choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require_options();
+      var { TURNAROUND, choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require_options();
       var LAST_STATION = 191;
       var ANY_STATION = 255;
       var GAP = 10;
@@ -2693,18 +3331,22 @@ var nxlineSerialPlc = (() => {
       var markHex = (value) => typeof value === "string" ? value.replace(/(?<![$\w])(?=\d?[a-f])[\da-f]{2}(?!\w)/gi, "0x$&") : value;
       var masterIdsOf = (value, stations = []) => masterIdList(markHex(value), { stations });
       var boundsOf = (areas) => areas.list.flatMap(({ base, words }) => [base, base + words]);
-      var frameCost = ({ steps, gap, character }) => {
-        const frames = steps === 4 ? 26 : 12;
-        const silence = (steps === 4 ? 2 * gap + 10 : gap + 5) / character;
-        return Math.round(frames + silence);
+      var jointOf = (areas) => areas.list.filter(({ as }) => as === "both").map(({ base, words }) => [base, base + words]);
+      var costsOf = ({ steps, gap, character, turnaround, repeats }) => {
+        const wait = (gap + turnaround) / character;
+        const frameCost = steps === 4 ? 26 + 2 * wait : 12 + wait;
+        return repeats ? { frameCost, again: 13 + wait } : { frameCost };
       };
       var SPLITS = /* @__PURE__ */ new Set(["PLC_OUT_OF_RANGE", "PLC_FRAME_TOO_LONG"]);
       var ABSENT = /* @__PURE__ */ new Set(["PLC_OUT_OF_RANGE"]);
       var UNKNOWN_FUNCTION = /* @__PURE__ */ new Set(["PLC_WRONG_FUNCTION", "PLC_NO_SERVICE"]);
-      var planOf = (given) => {
+      var planOf = (given, { soleMaster, ...wire }) => {
         let limits = given;
+        const costs = ({ turnaround = TURNAROUND, repeats = true }) => costsOf({ ...wire, turnaround, repeats: soleMaster && repeats });
         return {
-          reads: (points) => planReads(points, limits),
+          gap: wire.gap,
+          silences: wire.steps === 4 ? 2 : 1,
+          reads: (points, facts = {}) => planReads(points, { ...limits, ...costs(facts), holes: facts.holes }),
           writes: (points) => planWrites(points, limits),
           splits: SPLITS,
           absent: ABSENT,
@@ -2719,7 +3361,7 @@ var nxlineSerialPlc = (() => {
         area: "its area is unconfirmed or not for writing; confirm its row in the area table first",
         throughWord: "its area has only words: a single bit of it cannot be written"
       });
-      var readSettings = (given, character) => {
+      var readSettings = (given, character, lineGap = 0) => {
         const station = readStation(given.station);
         const steps = (
           /** @type {2|4} */
@@ -2731,6 +3373,8 @@ var nxlineSerialPlc = (() => {
         const notation = nxNotation({ areas: given.areas || [], tags: given.tags, wordOrder, byteOrder });
         const stations = [...given.stations ?? [], station];
         const limits = limitsOf(given.limits);
+        const soleMaster = isOn(given.soleMaster);
+        const memory = { bounds: boundsOf(notation.areas), joint: jointOf(notation.areas) };
         return {
           protocol: "nx",
           station,
@@ -2741,7 +3385,7 @@ var nxlineSerialPlc = (() => {
           attempts: wholeNumber("attempts", given.attempts, { fallback: 3, least: 1, most: 20 }),
           ...readHealth(given),
           masterIds: masterIdsOf(given.masterIds, stations),
-          soleMaster: isOn(given.soleMaster),
+          soleMaster,
           access: choice("access", given.access, ["read", "write"]),
           ranges: readRanges(given.writableRanges, notation),
           writeInterval: wholeNumber("writeInterval", given.writeInterval, { fallback: 0, least: 0, most: 36e5 }),
@@ -2750,7 +3394,7 @@ var nxlineSerialPlc = (() => {
           limits,
           reasons: REASONS,
           describe: (place, { write }) => describeAddress(place, { steps, write }),
-          plan: planOf({ ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) })
+          plan: planOf({ ...limits, ...memory }, { steps, gap: Math.max(gap, lineGap), character, soleMaster })
         };
       };
       module.exports = { masterIdsOf, readSettings, readStation };
@@ -2988,7 +3632,7 @@ var nxlineSerialPlc = (() => {
   });
 
   // scripts/editor/table.js
-  var require_table = __commonJS({
+  var require_table2 = __commonJS({
     "scripts/editor/table.js"(exports, module) {
       "use strict";
       var { truthy } = require_widgets();
@@ -3022,7 +3666,7 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { areaMap } = require_areas();
       var { attempt, hex } = require_model();
-      var { readFields, rowsOf } = require_table();
+      var { readFields, rowsOf } = require_table2();
       var { cell, flex, note, pick, say, tick } = require_widgets();
       var { errorText, t } = require_texts();
       var areaFields = (data) => ({
@@ -3143,7 +3787,7 @@ var nxlineSerialPlc = (() => {
           if (!columns.includes(needed))
             throw new PlcError("BAD_TAG", { name: "table", reason: `the column ${needed} is missing` });
         }
-        const decimal = (value) => separator === "," ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*)$/, "$1.$2");
+        const decimal = (value) => separator === "," ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*%?\s*)$/, "$1.$2");
         const numeric = /* @__PURE__ */ new Set(["scale", "offset", "deadband", "min", "max", "maxStep"]);
         return rows.map((cells) => {
           const row = {};
@@ -3179,7 +3823,7 @@ var nxlineSerialPlc = (() => {
       var { parseExpression } = require_item();
       var { readTags } = require_tags();
       var { describe, notationOf, unsure } = require_model();
-      var { merged, readFields, rowsOf } = require_table();
+      var { merged, readFields, rowsOf } = require_table2();
       var { cell, flex, mark, note, pick, say, tick } = require_widgets();
       var { reasonOf, t } = require_texts();
       var TYPES = ["", "bool", "uint16", "int16", "uint32", "int32", "float32", "bcd16", "bcd32", "string[8]"];
@@ -3317,7 +3961,7 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { check, done, open } = require_check();
       var { exportTags, importTags, tagTable } = require_tags2();
-      var { rowsOf } = require_table();
+      var { rowsOf } = require_table2();
       var { fillDefaults, tabs } = require_widgets();
       var { capital, causeText, errorText, t } = require_texts();
       var PREFIX = "node-config-input-";
@@ -3462,7 +4106,7 @@ var nxlineSerialPlc = (() => {
       var { areaTable } = require_areas2();
       var { deviceDialog } = require_device();
       var { attempt, deviceLabel } = require_model();
-      var { rowsOf } = require_table();
+      var { rowsOf } = require_table2();
       var { t } = require_texts();
       var areaRows = () => rowsOf($("#nxline-nx-area-list")).filter((row) => row.area);
       var dialog = deviceDialog("nx", {
@@ -3587,6 +4231,473 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/line/timing.js
+  var require_timing = __commonJS({
+    "lib/line/timing.js"(exports, module) {
+      "use strict";
+      var SLACK = Object.freeze({ serial: 50, tcp: 250, simulated: 50 });
+      var FAST_GAP = 1.75;
+      var bitsPerCharacter = ({ dataBits, parity, stopBits }) => 1 + dataBits + (parity === "none" ? 0 : 1) + stopBits;
+      var characterTime = (settings) => bitsPerCharacter(settings) * 1e3 / settings.baudRate;
+      var gapTime = (settings) => {
+        if (settings.gap > 0) return settings.gap;
+        return settings.baudRate > 19200 ? FAST_GAP : 3.5 * characterTime(settings);
+      };
+      var slackTime = (settings) => settings.slack || SLACK[settings.transport];
+      var lineTimes = (settings) => ({
+        character: characterTime(settings),
+        gap: gapTime(settings),
+        slack: slackTime(settings)
+      });
+      module.exports = { bitsPerCharacter, characterTime, gapTime, lineTimes, slackTime };
+    }
+  });
+
+  // lib/device/chino-settings.js
+  var require_chino_settings = __commonJS({
+    "lib/device/chino-settings.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { TABLES, describeAddress } = require_address();
+      var { planTableWrites, planTables } = require_plan();
+      var { modbusNotation } = require_modbus_notation();
+      var { TURNAROUND, blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require_options();
+      var LAST_STATION = 247;
+      var MOST_SINGLES = 123;
+      var NUMBERS = Object.freeze(
+        /** @type {[string, number, number, number][]} */
+        [
+          ["timeout", 1e3, 10, 6e5],
+          ["sendWait", 0, 0, 1e4],
+          ["attempts", 3, 1, 20],
+          ["coilRead", 2e3, 1, 2e3],
+          ["coilUnit", 1, 1, 2e3],
+          ["coilWrite", 1968, 1, 1968],
+          ["discreteRead", 2e3, 1, 2e3],
+          ["discreteUnit", 1, 1, 2e3],
+          ["inputRead", 125, 1, 125],
+          ["holdingRead", 125, 1, 125],
+          ["holdingWrite", 123, 1, 123],
+          ["turnaround", 100, 0, 1e4],
+          ["writeInterval", 0, 0, 36e5],
+          ["deadline", 0, 0, 36e5]
+        ]
+      );
+      var CHOICES = Object.freeze({
+        protocol: ["rtu", "ascii"],
+        addressMode: ["1-base", "0-base"],
+        coilFunction: ["0F", "05", "auto"],
+        holdingFunction: ["10", "06", "auto"],
+        wordOrder: ["low", "high"],
+        byteOrder: ["high", "low"],
+        access: ["read", "write"]
+      });
+      var readStation = (value, broadcast) => {
+        const number = typeof value === "string" && /^\s*\d{1,3}\s*$/.test(value) ? Number(value) : value;
+        if (typeof number !== "number" || !Number.isInteger(number) || number < 0 || number > LAST_STATION) {
+          throw new PlcError("BAD_STATION", { station: value, reason: "it must be 1 to 247, or 0 for a broadcast" });
+        }
+        if (number === 0 && !broadcast) {
+          throw new PlcError("BROADCAST_REFUSED", { what: "station 0", reason: "broadcasts are not allowed here" });
+        }
+        return number;
+      };
+      var plainSettings = (given) => {
+        const settings = {};
+        for (const [name, fallback, least, most] of NUMBERS) {
+          settings[name] = wholeNumber(name, given[name], { fallback, least, most });
+        }
+        for (const [name, known] of Object.entries(CHOICES)) settings[name] = choice(name, readable(given[name]), known);
+        for (const [unit, read] of [
+          ["coilUnit", "coilRead"],
+          ["discreteUnit", "discreteRead"]
+        ]) {
+          if (settings[unit] <= settings[read]) continue;
+          const reason = `it is more than the max read count, ${settings[read]}`;
+          throw new PlcError("BAD_SETTING", { setting: unit, value: settings[unit], reason });
+        }
+        return settings;
+      };
+      var readable = (value) => {
+        if (typeof value !== "number" && typeof value !== "string") return value;
+        const text = String(value).trim();
+        const same = (each) => each.toLowerCase() === text.toLowerCase() || each === text.padStart(2, "0");
+        return Object.values(CHOICES).flat().find(same) ?? value;
+      };
+      var readCount = (most, unit = 1) => most - most % unit;
+      var tablesOf = (settings, costs) => {
+        const { coilRead, coilUnit, discreteRead, discreteUnit, inputRead, holdingRead } = settings;
+        const write = (chosen, count) => chosen === "05" || chosen === "06" ? MOST_SINGLES : count;
+        const limits = {
+          co: {
+            unit: coilUnit,
+            read: readCount(coilRead, coilUnit),
+            write: write(settings.coilFunction, settings.coilWrite)
+          },
+          di: { unit: discreteUnit, read: readCount(discreteRead, discreteUnit), write: 0 },
+          ir: { read: inputRead, write: 0 },
+          hr: { read: holdingRead, write: write(settings.holdingFunction, settings.holdingWrite) }
+        };
+        return TABLES.map(({ table, kind, base, size }) => ({
+          kind,
+          from: base,
+          to: base + size,
+          ...costs,
+          ...limits[table]
+        }));
+      };
+      var LEAST_GAP = 1.75;
+      var gapOf = ({ framing, sendWait }, { character, gap = 0 }) => Math.max(gap, sendWait, framing === "ascii" ? 0 : Math.max(LEAST_GAP, 3.5 * character));
+      var costsOf = (framing, { gap, character, turnaround }) => {
+        const wait = (gap + turnaround) / character;
+        return framing === "ascii" ? { frameCost: 28 - 3 + wait, scale: 2 } : { frameCost: 13 - 3 + wait };
+      };
+      var SPLITS = /* @__PURE__ */ new Set(["MODBUS_ILLEGAL_ADDRESS", "MODBUS_ILLEGAL_VALUE"]);
+      var ABSENT = /* @__PURE__ */ new Set(["MODBUS_ILLEGAL_ADDRESS"]);
+      var planOf = (settings, times) => {
+        const gap = gapOf(settings, times);
+        const { character } = times;
+        const tablesFor = (turnaround) => tablesOf(settings, costsOf(settings.framing, { gap, character, turnaround }));
+        const tables = tablesFor(TURNAROUND);
+        return {
+          gap,
+          silences: 1,
+          reads: (points, { holes, turnaround = TURNAROUND } = {}) => planTables(points, tablesFor(turnaround), { holes }),
+          writes: (points) => planTableWrites(points, tables),
+          splits: SPLITS,
+          absent: ABSENT,
+          simpler: () => false
+        };
+      };
+      var REASONS = Object.freeze({ area: "discrete inputs and input registers can only be read", throughWord: "" });
+      var refuseBroadcast = (what, reason) => {
+        throw new PlcError("BROADCAST_REFUSED", { what, reason });
+      };
+      var broadcastChecks = (station) => {
+        if (station !== 0) return {};
+        return {
+          checkRead: () => refuseBroadcast("a read", "no station answers a broadcast"),
+          checkWrite: ({ points, steps }, { verify }) => {
+            if (steps.length > 0) refuseBroadcast(steps[0].text, "its largest step needs what each station holds now");
+            const bit = points.find(({ through }) => through);
+            if (bit) refuseBroadcast(bit.text, "one bit of a register is written by reading the register first");
+            if (verify) refuseBroadcast("a write that is read back", "no station answers a broadcast");
+          }
+        };
+      };
+      var readSettings = (given, character = 0.52, lineGap = 0) => {
+        const broadcast = isOn(given.broadcast);
+        const station = readStation(given.station, broadcast);
+        const { protocol: framing, ...settings } = plainSettings(given);
+        const { addressMode, wordOrder, byteOrder, coilFunction, holdingFunction, turnaround } = settings;
+        const notation = modbusNotation({ addressMode, tags: given.tags, wordOrder, byteOrder });
+        return {
+          ...settings,
+          ...readHealth(given),
+          protocol: "modbus",
+          framing,
+          station,
+          name: blank(given.name) && station === 0 ? "all stations" : nameOf(given.name, station),
+          probe08: isOn(given.probe08),
+          broadcast: broadcast ? { turnaround } : null,
+          ranges: readRanges(given.writableRanges, notation),
+          notation,
+          reasons: REASONS,
+          functions: { co: coilFunction, hr: holdingFunction },
+          units: { 1: settings.coilUnit, 2: settings.discreteUnit },
+          describe: (place, { write }) => describeAddress(place, { write, coilFunction, holdingFunction }),
+          plan: planOf({ ...settings, framing }, { character, gap: lineGap }),
+          ...broadcastChecks(station)
+        };
+      };
+      module.exports = { readSettings, readStation };
+    }
+  });
+
+  // lib/tag/value.js
+  var require_value = __commonJS({
+    "lib/tag/value.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { absurdity, elementsOf, toNumber } = require_convert();
+      var decimals = (number) => {
+        const [mantissa, exponent = "0"] = String(Math.abs(number)).split("e");
+        return Math.max(0, (mantissa.split(".")[1] || "").length - Number(exponent));
+      };
+      var scaled = (tag) => Boolean(tag) && (tag.scale !== 1 || tag.offset !== 0);
+      var toEngineering = (raw, tag, integer) => {
+        const value = raw * tag.scale + tag.offset;
+        const places = Math.max(decimals(tag.scale), decimals(tag.offset));
+        return integer && places <= 15 ? Number(value.toFixed(places)) : Number(value.toPrecision(15));
+      };
+      var toRaw = (value, tag) => Number(((value - tag.offset) / tag.scale).toPrecision(15));
+      var decodeValue = (item, raw) => {
+        const answer = item.type.decode(raw, item);
+        if ("bad" in answer) {
+          const error = new PlcError("NOT_A_VALUE", { item: item.text, type: item.type.name, reason: answer.bad });
+          return { code: "NOT_A_VALUE", text: error.message };
+        }
+        if (!scaled(item.tag)) return answer;
+        return { value: toEngineering(answer.value, item.tag, item.type.integer) };
+      };
+      var checkLimits = (item, number, value) => {
+        const { min = null, max = null } = item.tag ?? {};
+        if (min !== null && number < min || max !== null && number > max) {
+          throw new PlcError("VALUE_OUT_OF_RANGE", {
+            item: item.text,
+            value,
+            least: min ?? "any",
+            most: max ?? "any"
+          });
+        }
+      };
+      var engineeringRange = ({ tag, type }) => {
+        const ends = [type.least, type.most].map((raw) => toEngineering(raw, tag, type.integer)).sort((a, b) => a - b);
+        return { least: ends[0], most: ends[1] };
+      };
+      var encodeOne = (item, value) => {
+        const { type, tag, text, wordOrder, byteOrder } = item;
+        if (!type.numeric) return type.encode(value, { item: text, wordOrder, byteOrder });
+        const number = toNumber(value, text);
+        checkLimits(item, number, value);
+        if (!scaled(tag)) return type.encode(number, { item: text, wordOrder });
+        try {
+          const raw = type.encode(toRaw(number, tag), { item: text, wordOrder, rounds: true });
+          const out = (
+            /** @type {{ value: number }} */
+            type.decode(raw, item).value
+          );
+          checkLimits(item, toEngineering(out, tag, type.integer), value);
+          return raw;
+        } catch (caught) {
+          const error = (
+            /** @type {PlcError} */
+            caught
+          );
+          if (error.code !== "VALUE_OUT_OF_RANGE" || error.details.value === value) throw error;
+          throw new PlcError("VALUE_OUT_OF_RANGE", { item: text, value, ...engineeringRange(item) });
+        }
+      };
+      var encodeValue = (item, value) => {
+        const absurd = absurdity(value);
+        if (absurd && value !== "") throw new PlcError("BAD_VALUE", { item: item.text, value, reason: absurd });
+        if (!item.range) {
+          if (Array.isArray(value)) throw new PlcError("BAD_VALUE", { item: item.text, value, reason: "it takes one value" });
+          return [encodeOne(item, value)];
+        }
+        if (!Array.isArray(value) || value.length !== item.count) {
+          throw new PlcError("BAD_VALUE", { item: item.text, value, reason: `it takes an array of ${item.count} values` });
+        }
+        return elementsOf(value).map((one) => encodeOne(item, one));
+      };
+      module.exports = { decodeValue, encodeValue };
+    }
+  });
+
+  // lib/device/points.js
+  var require_points = __commonJS({
+    "lib/device/points.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { splitType } = require_item();
+      var { decodeValue } = require_value();
+      var MOST_POINTS = 2e4;
+      var WORD = 16;
+      var widthOf = (item) => item.packed ? item.type.words * WORD : item.type.words;
+      var pointOf = (item, index) => {
+        const { kind, address } = item;
+        if (item.throughWord) return { kind: "word", address: address + index >> 4, count: 1 };
+        const count = widthOf(item);
+        return { kind, address: address + index * count, count };
+      };
+      var writtenAs = (item) => item.tag ? item.text : splitType(item.text.trim())[0];
+      var packed = (bits) => Array.from(
+        { length: bits.length / WORD },
+        (_, word) => bits.slice(word * WORD, (word + 1) * WORD).reduce((sum, bit, at) => sum | (bit ? 1 << at : 0), 0)
+      );
+      var unpacked = (words) => words.flatMap((word) => Array.from({ length: WORD }, (_, at) => Boolean(word >> at & 1)));
+      var writePointsOf = ({ item, values }) => {
+        const width = widthOf(item);
+        return values.map((raw, index) => ({
+          kind: item.kind,
+          address: item.address + index * width,
+          values: item.packed ? unpacked(raw) : raw,
+          count: width,
+          text: item.range ? item.elements[index].text : writtenAs(item),
+          through: item.throughWord
+        }));
+      };
+      var readBackOf = ({ kind, address, count, text, through }) => through ? { kind: (
+        /** @type {'word'} */
+        "word"
+      ), address: address >> 4, count: 1, text } : { kind, address, count, text };
+      var readBackValues = ({ address, through }, raw) => through ? [Boolean(raw[0] >> (address & 15) & 1)] : raw;
+      var checkTotal = (items) => {
+        const total = items.reduce((sum, item) => sum + item.count * widthOf(item), 0);
+        if (total > MOST_POINTS) throw new PlcError("TOO_MANY", { count: total, unit: "addresses", most: MOST_POINTS });
+      };
+      var pointsOf = (items) => {
+        checkTotal(items);
+        return items.flatMap(
+          (item) => item.elements.map(({ text }, index) => ({ ...pointOf(item, index), text: item.range ? text : writtenAs(item) }))
+        );
+      };
+      var rawOf = (item, index, raw) => {
+        if (item.packed) return packed(raw);
+        return readBackValues({ address: item.address + index, through: item.throughWord }, raw);
+      };
+      var elementOf = (item, index, reading) => {
+        const { name } = item.elements[index];
+        const base = { name, timestamp: reading.at };
+        if ("error" in reading) {
+          return { ...base, value: null, quality: "bad", code: reading.error.code, text: reading.error.message };
+        }
+        const answer = decodeValue(item, rawOf(item, index, reading.raw));
+        if ("code" in answer) return { ...base, value: null, quality: "bad", code: answer.code, text: answer.text };
+        return { ...base, value: answer.value, quality: "good" };
+      };
+      var arrayOf = (item, elements) => {
+        const bad = elements.find((element) => element.quality === "bad");
+        const value = elements.every((element) => element.quality === "bad") ? null : elements.map((element) => element.value);
+        const timestamp = Math.min(...elements.map((element) => element.timestamp));
+        const result = { name: item.name, value, quality: bad ? "bad" : "good", timestamp, elements };
+        return bad ? { ...result, code: bad.code, text: bad.text } : result;
+      };
+      var resultsOf = (items, readings) => {
+        let next = 0;
+        return items.map((item) => {
+          const elements = item.elements.map((_, index) => elementOf(item, index, readings[next++]));
+          const result = item.range ? arrayOf(item, elements) : { ...elements[0], name: item.name };
+          const { text, label, unit, tag } = item;
+          return { ...result, item: text, label, unit, deadband: tag ? tag.deadband : 0 };
+        });
+      };
+      module.exports = {
+        MOST_POINTS,
+        checkTotal,
+        packed,
+        pointsOf,
+        readBackOf,
+        readBackValues,
+        resultsOf,
+        widthOf,
+        writePointsOf
+      };
+    }
+  });
+
+  // lib/device/predict.js
+  var require_predict = __commonJS({
+    "lib/device/predict.js"(exports, module) {
+      "use strict";
+      var { PlcError } = require_error();
+      var { lineTimes } = require_timing();
+      var { loadOf } = require_plan();
+      var { parseItem } = require_item();
+      var { readSettings: readChino } = require_chino_settings();
+      var { pointsOf } = require_points();
+      var { readSettings: readNx } = require_settings();
+      var READERS = { nx: readNx, chino: readChino };
+      var timesOf = ({ baudRate = 19200, dataBits = 8, parity = "none", stopBits = 1, gap = 0 }) => {
+        const numbers = {
+          baudRate: Number(baudRate),
+          dataBits: Number(dataBits),
+          stopBits: Number(stopBits),
+          gap: Number(gap)
+        };
+        return lineTimes({ ...numbers, parity, slack: 0, transport: "serial" });
+      };
+      var groupsOf = (asked) => {
+        const groups = /* @__PURE__ */ new Map();
+        for (const { interval, points } of asked) groups.set(interval, [...groups.get(interval) ?? [], ...points]);
+        return [...groups].map(([interval, points]) => ({ interval, points }));
+      };
+      var stationLoad = ({ device = "nx", settings: given, subscriptions }, times) => {
+        const read = READERS[device];
+        if (!read) throw new PlcError("BAD_SETTING", { setting: "device", value: device, reason: "known are nx, chino" });
+        const { plan, notation, station } = read(given, times.character, times.gap);
+        const wire = { requestsOf: (points) => plan.reads(points), ...times, gap: plan.gap, silences: plan.silences };
+        const asked = subscriptions.map(({ items, interval, name = "" }) => {
+          const points = pointsOf(items.map((text) => parseItem(text, notation)));
+          const alone = loadOf([{ interval, points }], wire);
+          const [{ ms, requests }] = alone.cycles;
+          return { name, station, interval, points, ms, requests, percent: alone.percent };
+        });
+        return { station, ...loadOf(groupsOf(asked), wire), asked: asked.map(({ points: _points, ...row }) => row) };
+      };
+      var predict = ({ line, stations }) => {
+        const times = timesOf(line);
+        const loads = stations.map((station) => stationLoad(station, times));
+        const sum = (key) => loads.reduce((total, load) => total + load[key], 0);
+        const asked = loads.flatMap((load) => load.asked);
+        const asksMost = asked.reduce((most, each) => most && most.percent >= each.percent ? most : each, asked[0] ?? null);
+        return { percent: sum("percent"), busyPercent: sum("busyPercent"), asksMost, stations: loads };
+      };
+      module.exports = { predict };
+    }
+  });
+
+  // scripts/editor/cost.js
+  var require_cost = __commonJS({
+    "scripts/editor/cost.js"(exports, module) {
+      "use strict";
+      var { predict } = require_predict();
+      var { device, isItem, isModbus, reads, showsList, value } = require_form();
+      var { attempt } = require_model();
+      var { say } = require_widgets();
+      var { t } = require_texts();
+      var MOST = 90;
+      var LIMITS = ["readWords", "readBits"];
+      var plain = (settings) => Object.fromEntries(
+        Object.entries(settings).filter(
+          ([, given]) => given !== "" && !(typeof given === "string" && given.startsWith("${"))
+        )
+      );
+      var settingsOf = ({ station, ...given }) => {
+        const known = plain(given);
+        const limits = Object.fromEntries(LIMITS.filter((limit) => known[limit]).map((limit) => [limit, Number(known[limit])]));
+        return {
+          ...known,
+          station: Number(station) || 1,
+          access: "read",
+          writableRanges: "",
+          ...isModbus() ? {} : { limits }
+        };
+      };
+      var costOf = (items) => {
+        const interval = Number(value("interval"));
+        const good = items.filter(isItem);
+        if (!(interval >= 10) || good.length === 0) return null;
+        const settings = device();
+        const line = plain(RED.nodes.node(settings.line) || {});
+        const subscriptions = [{ items: good, interval }];
+        const stations = [{ device: isModbus() ? "chino" : "nx", settings: settingsOf(settings), subscriptions }];
+        return attempt(
+          () => predict({ line: (
+            /** @type {any} */
+            line
+          ), stations: (
+            /** @type {any} */
+            stations
+          ) }).asksMost,
+          null
+        );
+      };
+      var round = (number) => number < 10 ? Math.round(number * 10) / 10 : Math.round(number);
+      var showCost = (items) => {
+        const block = $("#nxline-read-cost");
+        const cost = showsList() ? costOf(items) : null;
+        if (!cost) return block.empty();
+        const { percent, ms, requests } = cost;
+        const figures = { ms: round(percent * 10), percent: round(percent), cycle: round(ms), requests };
+        const more = percent > MOST ? ` ${t("editor.readCostMore")}` : "";
+        return say(block, t("editor.readCost", figures) + more, percent > MOST);
+      };
+      var showSilence = () => $(".nxline-silence").toggle(reads() && value("report") !== "all");
+      module.exports = { showCost, showSilence };
+    }
+  });
+
   // scripts/editor/reading.js
   var require_reading = __commonJS({
     "scripts/editor/reading.js"(exports, module) {
@@ -3605,6 +4716,7 @@ var nxlineSerialPlc = (() => {
         value
       } = require_form();
       var { attempt, describe, deviceName, parseItem, unsure } = require_model();
+      var { showCost, showSilence } = require_cost();
       var { copyable, flex, note, say, suggest } = require_widgets();
       var { errorText, t } = require_texts();
       var itemTexts = () => $("#nxline-read-items").editableList("items").toArray().map((row) => row.data("nxline").read()).filter((text) => text !== "");
@@ -3670,6 +4782,7 @@ var nxlineSerialPlc = (() => {
         })
       };
       var showExample = () => {
+        showCost(itemTexts());
         const known = notation();
         const items = itemTexts().flatMap((text2) => attempt(() => singles(parseItem(text2, known)), []));
         const rows = items.slice(0, 3).map((item, index) => [item.name, sampleOf(item, index)]);
@@ -3697,6 +4810,9 @@ var nxlineSerialPlc = (() => {
           $(".nxline-list").toggle(showsList());
           showExample();
         }).trigger("change");
+        field("interval").on("input change", () => showCost(itemTexts()));
+        field("report").on("change", showSilence);
+        showSilence();
         [deviceProperty(), "format", "ranges", "booleans"].forEach((name) => field(name).on("change", judgeAll));
         judgeAll();
       };
@@ -3788,7 +4904,7 @@ var nxlineSerialPlc = (() => {
         $(".nxline-reads").toggle(reads());
         $(".nxline-writes").toggle(writes());
         $(".nxline-both").toggle(value("mode") === "both");
-        ["itemsType", "target", "interval"].forEach((name) => field(name).trigger("change"));
+        ["itemsType", "target", "interval", "report"].forEach((name) => field(name).trigger("change"));
         fitList();
       };
       var editRegulator = (node) => {

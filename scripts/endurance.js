@@ -9,6 +9,7 @@
  *   npm run endurance -- c24random [1000000] so many random inputs for everything that reads bytes of a C24 port
  *   npm run endurance -- inconrandom [1000000] the same for lines of an INCON controller
  *   npm run endurance -- inconmessages [10000] so many acknowledged lines each way on a line that damages bytes; then with starts in between
+ *   npm run endurance -- lines [600]         so many seconds of 32 saturated lines in one process; its processor, event loop and memory
  *   npm run endurance -- frames [10000000]   so many damaged answers of each protocol, by class; what is claimed must not be taken once
  *   npm run endurance -- coverage [lib/codec] which branches no test takes, and why; a folder below its limit is a failure
  *   npm run endurance -- mutation [lib/codec] changes the code at each place; fewer than 85 % of them noticed by the tests is a failure.
@@ -120,6 +121,15 @@ const RUNS = {
     const { inconRandom } = require(path.join(support, 'incon-random.js'))
     print(JSON.stringify(inconRandom({ inputs: whole(inputs, 'inputs') })))
     print(`no exception, heap ${Math.round(process.memoryUsage().heapUsed / 1e6)} MB`)
+  },
+
+  /** @param {string} [count] */
+  async lines(count = '600') {
+    const { manyLines } = require(path.join(__dirname, '..', 'bench', 'many-lines.js'))
+    const done = await manyLines({ seconds: whole(count, 'seconds') })
+    print(JSON.stringify(done))
+    if (done.growth > 1) throw new Error(`the memory has grown by ${done.growth} MB`)
+    print('the memory did not grow')
   },
 
   /** @param {string} [count] */

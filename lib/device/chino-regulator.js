@@ -11,7 +11,7 @@ const { ModbusTalk } = require('./modbus-talk')
 class ChinoRegulator extends Device {
   /** @param {Record<string, any>} options of {@link createChinoRegulator} */
   constructor({ lease, clock, random, ...given }) {
-    const settings = readSettings(given)
+    const settings = readSettings(given, lease.line.times?.character, lease.line.times?.gap)
     const health = new Health({ lease, clock, settings, random })
     const talk = new ModbusTalk({ lease, health, settings, random })
     super({ settings, line: lease.line, talk, health, clock, random })

@@ -3,7 +3,7 @@ const { PlcError } = require('../error')
 const { TABLES, describeAddress } = require('../codec/modbus/address')
 const { planTableWrites, planTables } = require('../plan')
 const { modbusNotation } = require('../tag/modbus-notation')
-const { blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require('./options')
+const { TURNAROUND, blank, choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require('./options')
 
 /** The configuration of a CHINO regulator, read and checked before anything is sent. Panel manual, driver settings. */
 
@@ -88,30 +88,60 @@ const readable = value => {
 const readCount = (most, unit = 1) => most - (most % unit)
 
 /** The four tables with the limits of this station: what it is asked for at once stays inside them also when it is rounded up. */
-const tablesOf = settings => {
+const tablesOf = (settings, costs) => {
   const { coilRead, coilUnit, discreteRead, discreteUnit, inputRead, holdingRead } = settings
   // a function of one value has a frame for each: the count of one frame does not bind it
   const write = (chosen, count) => (chosen === '05' || chosen === '06' ? MOST_SINGLES : count)
   const limits = {
-    co: { read: readCount(coilRead, coilUnit), write: write(settings.coilFunction, settings.coilWrite) },
-    di: { read: readCount(discreteRead, discreteUnit), write: 0 },
+    co: {
+      unit: coilUnit,
+      read: readCount(coilRead, coilUnit),
+      write: write(settings.coilFunction, settings.coilWrite)
+    },
+    di: { unit: discreteUnit, read: readCount(discreteRead, discreteUnit), write: 0 },
     ir: { read: inputRead, write: 0 },
     hr: { read: holdingRead, write: write(settings.holdingFunction, settings.holdingWrite) }
   }
-  return TABLES.map(({ table, kind, base, size }) => ({ kind, from: base, to: base + size, ...limits[table] }))
+  return TABLES.map(({ table, kind, base, size }) => ({
+    kind,
+    from: base,
+    to: base + size,
+    ...costs,
+    ...limits[table]
+  }))
+}
+
+/** Silence before a frame: 3.5 characters in RTU, 1.75 ms at least (MODBUS over serial line, 2.5.1.1). ms */
+const LEAST_GAP = 1.75
+const gapOf = ({ framing, sendWait }, { character, gap = 0 }) =>
+  Math.max(gap, sendWait, framing === 'ascii' ? 0 : Math.max(LEAST_GAP, 3.5 * character))
+
+/** What a request costs beside its data, in byte times: the frames' own bytes, silence, the station's time. ASCII has two characters for a byte. */
+const costsOf = (framing, { gap, character, turnaround }) => {
+  const wait = (gap + turnaround) / character
+  // query 8 and answer 5 bytes; ASCII: 17 and 11 characters
+  return framing === 'ascii' ? { frameCost: 28 - 3 + wait, scale: 2 } : { frameCost: 13 - 3 + wait }
 }
 
 const SPLITS = new Set(['MODBUS_ILLEGAL_ADDRESS', 'MODBUS_ILLEGAL_VALUE'])
 const ABSENT = new Set(['MODBUS_ILLEGAL_ADDRESS'])
 
-/** @returns {import('./options').Plan} */
-const planOf = tables => ({
-  reads: points => planTables(points, tables),
-  writes: points => planTableWrites(points, tables),
-  splits: SPLITS,
-  absent: ABSENT,
-  simpler: () => false
-})
+/** @param {any} settings @param {{ character: number, gap?: number }} times @returns {import('./options').Plan} */
+const planOf = (settings, times) => {
+  const gap = gapOf(settings, times)
+  const { character } = times
+  const tablesFor = turnaround => tablesOf(settings, costsOf(settings.framing, { gap, character, turnaround }))
+  const tables = tablesFor(TURNAROUND)
+  return {
+    gap,
+    silences: 1,
+    reads: (points, { holes, turnaround = TURNAROUND } = {}) => planTables(points, tablesFor(turnaround), { holes }),
+    writes: points => planTableWrites(points, tables),
+    splits: SPLITS,
+    absent: ABSENT,
+    simpler: () => false
+  }
+}
 
 const REASONS = Object.freeze({ area: 'discrete inputs and input registers can only be read', throughWord: '' })
 
@@ -135,9 +165,11 @@ const broadcastChecks = station => {
 
 /**
  * @param {Record<string, any>} given see `createChinoRegulator`
+ * @param {number} [character] ms that one character takes on the line
+ * @param {number} [lineGap] ms of silence that the line keeps before each frame
  * @throws {PlcError} BAD_STATION, BROADCAST_REFUSED, BAD_SETTING, BAD_TAG, BAD_ADDRESS and its like for the ranges
  */
-const readSettings = given => {
+const readSettings = (given, character = 0.52, lineGap = 0) => {
   const broadcast = isOn(given.broadcast)
   const station = readStation(given.station, broadcast)
   const { protocol: framing, ...settings } = plainSettings(given)
@@ -158,7 +190,7 @@ const readSettings = given => {
     functions: { co: coilFunction, hr: holdingFunction },
     units: { 1: settings.coilUnit, 2: settings.discreteUnit },
     describe: (place, { write }) => describeAddress(place, { write, coilFunction, holdingFunction }),
-    plan: planOf(tablesOf(settings)),
+    plan: planOf({ ...settings, framing }, { character, gap: lineGap }),
     ...broadcastChecks(station)
   }
 }

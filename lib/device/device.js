@@ -3,9 +3,13 @@ const { PlcError } = require('../error')
 const { PRIORITY, realClock } = require('../line')
 const { elementsOf } = require('../tag/convert')
 const { distinctNames, parseItem, splitType } = require('../tag/item')
+const { Load } = require('./load')
 const { checkTotal, pointsOf, resultsOf, widthOf } = require('./points')
+const { Grid } = require('./phases')
+const { Poller } = require('./poller')
 const { Reader } = require('./reader')
 const { Subscription } = require('./subscription')
+const { Turnaround } = require('./turnaround')
 const { Writer } = require('./writer')
 
 const MOST_ITEMS = 1000
@@ -15,12 +19,14 @@ const MOST_KNOWN = 100000
 class Device {
   #settings
   #clock
-  #random
   #talk
   #health
   #reader
   #writer
+  /** @type {Set<Subscription>} */
   #subscriptions = new Set()
+  #poller
+  #load
   #known = new Map()
   #weight = 0
   #closed = false
@@ -37,11 +43,19 @@ class Device {
   constructor({ settings, line, talk, health, clock = realClock, random = Math.random }) {
     this.#settings = settings
     this.#clock = clock
-    this.#random = random
     this.#talk = talk
     this.#health = health
-    health.serve({ talk, wake: () => this.#subscriptions.forEach(each => each.again()) })
-    this.#reader = new Reader({ talk, settings, clock })
+    health.serve({ talk, wake: () => this.#poller.now([...this.#subscriptions].filter(each => each.again())) })
+    const turnaround = new Turnaround(line.memory(settings.station))
+    this.#reader = new Reader({ talk, settings, clock, turnaround })
+    const poll = { priority: PRIORITY.POLL, fresh: false }
+    const read = points => this.#reader.read(points, poll)
+    const overrun = member => health.now.state === 'online' && this.#load.overrun(member)
+    const grid = new Grid(line, settings.station)
+    const estimate = points => this.#load.msOf(points)
+    this.#poller = new Poller({ clock, random, grid, read, estimate, overrun })
+    const groups = () => this.#poller.groups
+    this.#load = new Load({ clock, line, settings, reader: this.#reader, groups, members: () => this.#subscriptions })
     const parse = text => this.item(text)
     this.#writer = new Writer({ talk, reader: this.#reader, line, clock, settings, parse })
   }
@@ -59,9 +73,23 @@ class Device {
     return this.#settings.access
   }
 
+  /** ms of its monotonic clock. */
+  get time() {
+    return this.#clock.now()
+  }
+
   /** How the station is: `{ state: 'online'|'suspect'|'demoted', since, probe }`, epoch ms or null. */
   get health() {
     return this.#health.now
+  }
+
+  /**
+   * What its polls are expected to take of the line: `{ percent, busyPercent, cycles }`, with the silences before frames and without; `cycles`:
+   * `[{ intervals, every, ms, requests }]`.
+   */
+  get cost() {
+    const { percent, busyPercent, cycles } = this.#load.all()
+    return { percent, busyPercent, cycles }
   }
 
   /** A timeout that would do for this station, ms; null: no answer came late, or nearly so. */
@@ -196,49 +224,66 @@ class Device {
 
   /**
    * Polls items.
-   * @param {{ items: any[], interval: number, immediately?: boolean }} group interval in ms, 10 to a day; `immediately`
-   *   (default): the first cycle at once
+   * @param {{ items: any[], interval: number, immediately?: boolean, name?: string }} group interval in ms, 10 to a day; `immediately`
+   *   (default): the first cycle at once; name: of who asks, for who looks on
    * @param {(results: import('./points').Result[], cycle: import('./subscription').Cycle) => void} callback per cycle
-   * @returns {{ stop: () => void, setItems: (items: any[]) => void, readonly overruns: number }}
+   * @returns {Polling}
    * @throws {PlcError} BAD_SETTING, LINE_CLOSED, and those of {@link Device.items}
    */
-  subscribe({ items, interval, immediately = true }, callback) {
+  subscribe({ items, interval, immediately = true, name }, callback) {
     if (this.#closed) throw new PlcError('LINE_CLOSED', { line: this.name })
-    this.#readable(items)
-    const subscription = new Subscription({
-      plc: this,
-      clock: this.#clock,
-      random: this.#random,
-      items,
-      interval,
-      immediately,
-      callback
-    })
+    const clock = this.#clock
+    const subscription = new Subscription({ clock, items: this.#readable(items), interval, callback, name })
+    subscription.repeat = own => this.#poller.now([own])
     this.#subscriptions.add(subscription)
+    this.#poller.add(subscription, { immediately })
+    this.#load.changed()
+    return this.#handleOf(subscription)
+  }
+
+  #handleOf(subscription) {
+    const load = this.#load
     return {
-      stop: () => {
-        subscription.stop()
-        this.#subscriptions.delete(subscription)
-      },
+      stop: () => this.#unsubscribe(subscription),
       setItems: next => {
-        this.#readable(next)
-        subscription.setItems(next)
+        subscription.setItems(this.#readable(next))
+        this.#poller.changed()
+        load.changed()
       },
       get overruns() {
         return subscription.overruns
+      },
+      get cost() {
+        return load.costOf(subscription)
       }
     }
+  }
+
+  #unsubscribe(subscription) {
+    subscription.stopped = true
+    this.#subscriptions.delete(subscription)
+    this.#poller.remove(subscription)
+    this.#load.changed()
   }
 
   /** Ends its subscriptions. The lease is its owner's to release: that ends what still waits. Any number of times. */
   close() {
     this.#closed = true
-    for (const subscription of this.#subscriptions) subscription.stop()
-    this.#subscriptions.clear()
+    for (const subscription of this.#subscriptions) this.#unsubscribe(subscription)
+    this.#load.close()
     this.#writer.close()
     this.#health.close()
     this.#talk.close()
   }
 }
+
+/**
+ * @typedef {object} Polling
+ * @property {() => void} stop
+ * @property {(items: any[]) => void} setItems
+ * @property {number} overruns cycles that were left out
+ * @property {{ ms: number, percent: number, requests: number, linePercent: number, advice: string | null }} cost what a cycle takes by itself, and what
+ *   percent of the line's time that is; linePercent: of all who poll on the line; advice: where that is too much and this one asks for most
+ */
 
 module.exports = { Device }

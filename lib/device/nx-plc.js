@@ -11,9 +11,9 @@ const { Talk } = require('./talk')
 class NxPlc extends Device {
   /** @param {Record<string, any>} options of {@link createNxPlc} */
   constructor({ lease, clock, random = Math.random, ...given }) {
-    const settings = readSettings(given, lease.line.times?.character ?? 0.52)
+    const settings = readSettings(given, lease.line.times?.character ?? 0.52, lease.line.times?.gap)
     const health = new Health({ lease, clock, settings, random })
-    const talk = new Talk({ lease, health, settings, random })
+    const talk = new Talk({ lease, clock, health, settings, random })
     super({ settings, line: lease.line, talk, health, clock, random })
   }
 }

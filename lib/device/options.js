@@ -5,13 +5,22 @@ const { PlcError } = require('../error')
  * Reading of settings that every station has.
  *
  * @typedef {object} Plan how a station's points become requests; facts of its protocol
- * @property {(points: any[]) => any[]} reads points -> read requests (docs/architecture.md, "Plan")
+ * @property {(points: any[], facts?: Facts) => any[]} reads points -> read requests (docs/architecture.md, "Plan")
  * @property {(points: any[]) => any[]} writes points -> write requests
  * @property {Set<string>} splits codes after which a joint read is halved until the bad address stands alone
  * @property {Set<string>} absent codes by which a station says that it does not have an address; it then rests
  * @property {(request: any, error: PlcError) => boolean} simpler whether, from now on, the plan does without what the
  *   station does not know
+ * @property {number} gap ms of silence before each frame of ours
+ * @property {number} silences frames of ours in one read
+ *
+ * @typedef {object} Facts what was learnt of a station
+ * @property {any[]} [holes] addresses that it does not have
+ * @property {number} [turnaround] ms until it begins to answer
+ * @property {boolean} [repeats] whether it repeats a read by its short form, where that is allowed; default true
  */
+
+const TURNAROUND = 5 // ms of a station whose own is not known yet
 
 const blank = value => value === undefined || value === null || (typeof value === 'string' && value.trim() === '')
 
@@ -73,4 +82,4 @@ const readHealth = given => {
   throw new PlcError('BAD_SETTING', { setting: 'probeMost', value: probeMost, reason })
 }
 
-module.exports = { blank, choice, isOn, nameOf, readHealth, readRanges, textOf, wholeNumber }
+module.exports = { TURNAROUND, blank, choice, isOn, nameOf, readHealth, readRanges, textOf, wholeNumber }

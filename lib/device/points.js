@@ -135,7 +135,7 @@ const resultsOf = (items, readings) => {
  * @property {number} timestamp epoch ms at which the answer came
  * @property {string} label
  * @property {string} unit
- * @property {number} deadband engineering units, for reports by exception
+ * @property {number|string} deadband engineering units, or `2%`, for reports by exception
  * @property {string} [code] what is wrong
  * @property {string} [text]
  * @property {any[]} [elements] of a range: a result per value

@@ -1,6 +1,8 @@
 'use strict'
 const { PlcError } = require('../error')
+const { servedValues } = require('../plan')
 const { asPlcError, isStationFailure } = require('./failure')
+const { Plans, keyOf } = require('./plans')
 
 /**
  * Reads points, whatever some of them do: a request that fails spoils only its own points, an address that the station does
@@ -10,8 +12,6 @@ const { asPlcError, isStationFailure } = require('./failure')
 const REST = 30000 // ms that an address stays out of the joint polls after the station said that it does not have it
 const MOST_SPLITS = 64 // requests that one read may spend on finding bad addresses
 const BROKEN = new Set(['CRC_ERROR', 'INCOMPLETE', 'BAD_ANSWER'])
-
-const keyOf = point => `${point.kind} ${point.address} ${point.count}`
 
 /**
  * @typedef {{ kind: 'bit'|'word', address: number, count: number, text: string }} Point
@@ -28,15 +28,15 @@ class Reader {
   #station
   /** @type {import('./options').Plan} */
   #plan
-  /** Addresses that the station refused: key -> { error, until }. */
-  #absent = new Map()
+  #plans
 
-  /** @param {{ talk: any, settings: any, clock: any }} options */
-  constructor({ talk, settings, clock }) {
+  /** @param {{ talk: any, settings: any, clock: any, turnaround: { readonly ms: number } }} options turnaround: of the station */
+  constructor({ talk, settings, clock, turnaround }) {
     this.#talk = talk
     this.#clock = clock
     this.#station = settings.station
     this.#plan = settings.plan
+    this.#plans = new Plans({ talk, settings, turnaround })
   }
 
   /**
@@ -48,53 +48,43 @@ class Reader {
   async read(points, { priority, fresh }) {
     /** @type {Job} */
     const job = { points, priority, readings: new Array(points.length), splits: 0 }
-    const { joint, due, resting } = this.#groups(points, fresh)
-    for (const index of resting)
-      this.#fail([index], this.#named(points[index], this.#absent.get(keyOf(points[index]))), job)
-    // known absent addresses are asked for apart, so that they do not spoil the others' request again
-    const alone = equals(due, points)
-    await this.#run(this.#possible([joint, ...alone], job), job)
+    const { requests: joint, absent, misfits } = this.#plans.prepared(points)
+    for (const { index, error } of misfits) this.#fail([index], error, job)
+    const requests = absent.length > 0 ? [...joint, ...this.#apart(absent, { job, fresh })] : joint
+    // the last one of a cycle first in the next: the station repeats it by a short frame
+    const turned = requests.length > 1 && this.#talk.repeats?.(requests.at(-1))
+    await this.#run(turned ? [...requests].reverse() : requests, job)
     return job.readings
   }
 
-  /** Requests for all that can be asked for at all: a value that is longer than a request is bad alone. */
-  #possible(parts, job) {
+  /**
+   * The requests that read these points, if nothing is wrong with them; none if none of them can be read.
+   * @param {Point[]} points
+   * @returns {import('../plan/reads').ReadRequest[]}
+   */
+  requestsOf(points) {
     try {
-      return this.#requests(parts, job)
-    } catch (/** @type {any} */ error) {
-      if (error.code !== 'FRAME_TOO_LONG') throw error
-      const fitting = parts.map(part => part.filter(index => this.#fits(index, job)))
-      if (fitting.every(part => part.length === 0)) throw error
-      return this.#requests(fitting, job)
+      return this.#plans.prepared(points).requests
+    } catch {
+      return []
     }
   }
 
-  #fits(index, job) {
-    // a plan for each of thousands of points would take its time
-    if (job.points[index].count === 1) return true
-    try {
-      return this.#requests([[index]], job).length > 0
-    } catch (caught) {
-      this.#fail([index], asPlcError(caught, this.#station), job)
-      return false
-    }
+  /** Of what plans are made of. */
+  get version() {
+    return this.#plans.version
   }
 
-  #groups(points, fresh) {
-    const joint = []
+  /** Known absent addresses are asked for apart, so that they do not spoil the others' request again; or not at all for a while. */
+  #apart(absent, { job, fresh }) {
+    const { points } = job
     const due = []
-    const resting = []
-    points.forEach((point, index) => {
-      const known = this.#absent.get(keyOf(point))
-      if (!known) joint.push(index)
-      else if (fresh || known.until <= this.#clock.now()) due.push(index)
-      else resting.push(index)
-    })
-    return { joint, due, resting }
-  }
-
-  #requests(parts, job) {
-    return parts.flatMap(part => planned(part, job.points, this.#plan))
+    for (const index of absent) {
+      const known = this.#plans.absent.get(keyOf(points[index]))
+      if (!known || fresh || known.until <= this.#clock.now()) due.push(index)
+      else this.#fail([index], this.#named(points[index], known), job)
+    }
+    return this.#plans.requests(equals(due, points), job)
   }
 
   /**
@@ -121,9 +111,10 @@ class Reader {
     try {
       const answer = await this.#talk.read(request, job)
       const at = Math.round(this.#clock.wall())
-      for (const { point, at: place, count } of request.points) {
-        job.readings[point] = { raw: answer.slice(place, place + count), at }
-        this.#absent.delete(keyOf(job.points[point]))
+      const { absent } = this.#plans
+      for (const served of request.points) {
+        job.readings[served.point] = { raw: servedValues(answer, served), at }
+        if (absent.size > 0 && absent.delete(keyOf(job.points[served.point]))) this.#plans.learnt()
       }
       return null
     } catch (caught) {
@@ -134,27 +125,42 @@ class Reader {
   /** What another plan can mend. @returns {Promise<PlcError|null>} what is left of the error */
   async #settle(error, request, job) {
     const indexes = request.points.map(({ point }) => point)
-    if (this.#plan.splits.has(error.code)) return this.#split(indexes, error, job)
-    if (this.#plan.simpler(request, error)) return this.#run(this.#requests([indexes], job), job)
+    if (this.#plan.splits.has(error.code)) return this.#split(request, error, job)
+    if (this.#plan.simpler(request, error)) {
+      this.#plans.learnt()
+      return this.#run(this.#plans.requests([indexes], job), job)
+    }
     return error
   }
 
-  /** Such a refusal names no address: halve until the bad ones stand alone. @returns {Promise<PlcError|null>} */
-  async #split(indexes, error, job) {
+  /**
+   * Such a refusal names no address: halve until the bad ones stand alone, or between two good ones that a block read over.
+   * @returns {Promise<PlcError|null>}
+   */
+  async #split(request, error, job) {
+    const indexes = inOrder(request)
     const [first, second] = distinct(indexes, job.points)
     if (second === undefined) return this.#refused(first, indexes, { error, job })
     if (job.splits >= MOST_SPLITS) return error
     job.splits += 2
-    const sorted = [...indexes].sort((a, b) => order(job.points[a], job.points[b]))
-    const middle = cutAt(sorted, sorted.length >> 1, job.points)
-    return this.#run(this.#requests([sorted.slice(0, middle), sorted.slice(middle)], job), job)
+    const middle = cutAt(indexes, indexes.length >> 1, job.points)
+    const halves = [indexes.slice(0, middle), indexes.slice(middle)]
+    const ended = await this.#run(this.#plans.requests(halves, job), job)
+    if (!this.#plan.absent.has(error.code) || indexes.some(index => !job.readings[index]?.raw)) return ended
+    const [before, after] = halves.map(half => half.map(index => job.points[index]))
+    this.#plans.holes.learn(request, before, after)
+    this.#plans.learnt()
+    return ended
   }
 
   /** The address that stands alone is refused: each item that asked for it is told so by its own name. */
   #refused(key, indexes, { error, job }) {
     if (!this.#plan.absent.has(error.code)) return error
-    const known = { error, until: this.#clock.now() + REST }
-    this.#absent.set(key, known)
+    const { kind, address, count } = job.points[indexes[0]]
+    const hole = { kind, start: address, end: address + count }
+    const known = { error, until: this.#clock.now() + REST, hole }
+    this.#plans.absent.set(key, known)
+    this.#plans.learnt()
     for (const index of indexes) this.#fail([index], this.#named(job.points[index], known), job)
     return error
   }
@@ -183,7 +189,9 @@ class Reader {
   }
 }
 
-const order = (a, b) => a.kind.localeCompare(b.kind) || a.address - b.address || a.count - b.count
+/** The points of a request as they stand in its answer. */
+const inOrder = ({ points }) =>
+  [...points].sort((a, b) => a.at - b.at || (a.bit ?? 0) - (b.bit ?? 0) || a.count - b.count).map(({ point }) => point)
 
 /** Indexes of equal points together. @returns {number[][]} */
 const equals = (indexes, points) => {
@@ -205,11 +213,5 @@ const cutAt = (sorted, middle, points) => {
   if (first > 0) return first
   return sorted.findIndex(index => keyOf(points[index]) !== key)
 }
-
-/** A plan for some of the points, with their places in the whole. */
-const planned = (indexes, points, plan) =>
-  plan
-    .reads(indexes.map(index => points[index]))
-    .map(request => ({ ...request, points: request.points.map(each => ({ ...each, point: indexes[each.point] })) }))
 
 module.exports = { Reader }

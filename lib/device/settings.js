@@ -5,7 +5,7 @@ const { limitsOf } = require('../codec/nx/limits')
 const { nxNotation } = require('../tag/nx-notation')
 const { describeAddress } = require('../codec/nx/address')
 const { planReads, planWrites } = require('../plan')
-const { choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require('./options')
+const { TURNAROUND, choice, isOn, nameOf, readHealth, readRanges, wholeNumber } = require('./options')
 
 /** The configuration of an NX PLC, read and checked before anything is sent. */
 
@@ -48,22 +48,37 @@ const masterIdsOf = (value, stations = []) => masterIdList(markHex(value), { sta
 /** Absolute word addresses at which an area begins or ends. */
 const boundsOf = areas => areas.list.flatMap(({ base, words }) => [base, base + words])
 
-/** What one more request costs beside its INFO, in byte times: heads and CRC of the frames, gaps, the station's time. */
-const frameCost = ({ steps, gap, character }) => {
-  const frames = steps === 4 ? 26 : 12
-  const silence = (steps === 4 ? 2 * gap + 10 : gap + 5) / character
-  return Math.round(frames + silence)
+/** Words whose bits are the same memory: a bit may be read with its word. */
+const jointOf = areas => areas.list.filter(({ as }) => as === 'both').map(({ base, words }) => [base, base + words])
+
+/**
+ * What a request costs beside its INFO, in byte times: heads and CRC of the frames, gaps, the station's time. `again`: repeated by an RR, where
+ * nobody else may have asked the station meanwhile.
+ */
+const costsOf = ({ steps, gap, character, turnaround, repeats }) => {
+  const wait = (gap + turnaround) / character
+  const frameCost = steps === 4 ? 26 + 2 * wait : 12 + wait
+  return repeats ? { frameCost, again: 13 + wait } : { frameCost }
 }
 
 const SPLITS = new Set(['PLC_OUT_OF_RANGE', 'PLC_FRAME_TOO_LONG'])
 const ABSENT = new Set(['PLC_OUT_OF_RANGE'])
 const UNKNOWN_FUNCTION = new Set(['PLC_WRONG_FUNCTION', 'PLC_NO_SERVICE'])
 
-/** How points become requests; a CPU without the mixed read is asked without it. @returns {import('./options').Plan} */
-const planOf = given => {
+/**
+ * How points become requests; a CPU without the mixed read is asked without it.
+ * @param {any} given limits: those of the planner
+ * @param {{ steps: 2|4, gap: number, character: number, soleMaster: boolean }} wire
+ * @returns {import('./options').Plan}
+ */
+const planOf = (given, { soleMaster, ...wire }) => {
   let limits = given
+  const costs = ({ turnaround = TURNAROUND, repeats = true }) =>
+    costsOf({ ...wire, turnaround, repeats: soleMaster && repeats })
   return {
-    reads: points => planReads(points, limits),
+    gap: wire.gap,
+    silences: wire.steps === 4 ? 2 : 1,
+    reads: (points, facts = {}) => planReads(points, { ...limits, ...costs(facts), holes: facts.holes }),
     writes: points => planWrites(points, limits),
     splits: SPLITS,
     absent: ABSENT,
@@ -83,9 +98,10 @@ const REASONS = Object.freeze({
 /**
  * @param {Record<string, any>} given see `createNxPlc`
  * @param {number} character ms that one character takes on the line
+ * @param {number} [lineGap] ms of silence that the line keeps before each frame
  * @throws {PlcError} BAD_STATION, BAD_MASTER_ID, BAD_SETTING, BAD_AREA, BAD_TAG, BAD_ADDRESS and its like for the ranges
  */
-const readSettings = (given, character) => {
+const readSettings = (given, character, lineGap = 0) => {
   const station = readStation(given.station)
   const steps = /** @type {2|4} */ (choice('steps', given.steps, [2, 4]))
   const gap = wholeNumber('gap', given.gap, { fallback: GAP, least: 0, most: 10000 }) || GAP
@@ -94,6 +110,8 @@ const readSettings = (given, character) => {
   const notation = nxNotation({ areas: given.areas || [], tags: given.tags, wordOrder, byteOrder })
   const stations = [...(given.stations ?? []), station]
   const limits = limitsOf(given.limits)
+  const soleMaster = isOn(given.soleMaster)
+  const memory = { bounds: boundsOf(notation.areas), joint: jointOf(notation.areas) }
   return {
     protocol: 'nx',
     station,
@@ -104,7 +122,7 @@ const readSettings = (given, character) => {
     attempts: wholeNumber('attempts', given.attempts, { fallback: 3, least: 1, most: 20 }),
     ...readHealth(given),
     masterIds: masterIdsOf(given.masterIds, stations),
-    soleMaster: isOn(given.soleMaster),
+    soleMaster,
     access: choice('access', given.access, ['read', 'write']),
     ranges: readRanges(given.writableRanges, notation),
     writeInterval: wholeNumber('writeInterval', given.writeInterval, { fallback: 0, least: 0, most: 3600000 }),
@@ -113,7 +131,7 @@ const readSettings = (given, character) => {
     limits,
     reasons: REASONS,
     describe: (place, { write }) => describeAddress(place, { steps, write }),
-    plan: planOf({ ...limits, bounds: boundsOf(notation.areas), frameCost: frameCost({ steps, gap, character }) })
+    plan: planOf({ ...limits, ...memory }, { steps, gap: Math.max(gap, lineGap), character, soleMaster })
   }
 }
 

@@ -1,16 +1,9 @@
 'use strict'
 const { PlcError } = require('../error')
-const { PRIORITY } = require('../line')
-
-/**
- * Polling of a group of items, by the monotonic clock: no drift, no pile-up. A cycle that still runs when the next is due
- * is counted as an overrun, and that next one is left out.
- */
+const { pointsOf, resultsOf } = require('./points')
 
 const LEAST = 10
 const MOST = 86400000
-const EARLY = 2 // ms: timers of Node.js may fire a little before their time, which must not count as a cycle of its own
-const MOST_JITTER = 100 // ms: many groups that start together do not stay together
 
 /** The failure of a whole cycle: every item is bad, for one reason. */
 const failureOf = results => {
@@ -28,103 +21,95 @@ const readInterval = value => {
   throw new PlcError('BAD_SETTING', { setting: 'interval', value, reason: `${LEAST} to ${MOST} ms are possible` })
 }
 
+/** A group of items that is polled, and who hears of it. When, the poller decides. */
 class Subscription {
-  #plc
   #clock
   #callback
   #items
-  #interval
-  #timer = null
-  #first = 0
-  #running = false
-  #stopped = false
+  /** Those of the cycle that runs. */
+  #asked
   #state = ''
-  #failed = false
+  #start = 0
   #again = false
-  #overruns = 0
+  running = false
+  /** ms that the last cycle took */
+  took = 0
+  stopped = false
+  /** Whether the last cycle failed as a whole. */
+  failed = false
+  /** Cycles that were left out because the one before still ran, or the process stood still. */
+  overruns = 0
 
   /**
    * @param {object} options
-   * @param {{ read: (items: any[], options: { priority: number }) => Promise<any[]> }} options.plc
    * @param {any} options.clock
-   * @param {() => number} options.random
-   * @param {any[]} options.items
+   * @param {import('../tag/item').Item[]} options.items
    * @param {unknown} options.interval ms, 10 to a day
-   * @param {boolean} [options.immediately] the first cycle at once (default), or after one interval
    * @param {(results: any[], cycle: Cycle) => void} options.callback
+   * @param {string} [options.name] of who asks, for who looks on
    * @throws {PlcError} BAD_SETTING
    */
-  constructor({ plc, clock, random, items, interval, immediately = true, callback }) {
-    this.#plc = plc
+  constructor({ clock, items, interval, callback, name = '' }) {
+    this.name = name
     this.#clock = clock
     this.#callback = callback
     this.#items = items
-    this.#interval = readInterval(interval)
-    const wait = immediately ? random() * Math.min(MOST_JITTER, this.#interval / 10) : this.#interval
-    this.#first = clock.now() + wait
-    this.#timer = clock.setTimer(() => this.#tick(), wait)
+    this.#asked = items
+    this.interval = readInterval(interval)
+    this.points = pointsOf(items)
   }
 
-  /** Cycles that were left out because the one before still ran. */
-  get overruns() {
-    return this.#overruns
-  }
-
-  get items() {
-    return this.#items
-  }
-
-  /** Other items from the next cycle on. @param {any[]} items */
+  /** Other items from the next cycle on. @param {import('../tag/item').Item[]} items */
   setItems(items) {
     this.#items = items
+    this.points = pointsOf(items)
     this.#state = ''
   }
 
-  /** No callback comes any more. */
-  stop() {
-    this.#stopped = true
-    this.#clock.clearTimer(this.#timer)
-  }
-
-  /** The station may answer again: what failed is asked for at once, and not after what may be a long interval. */
+  /** The station may answer again. @returns {boolean} whether it is to be asked at once, and not after what may be a long interval */
   again() {
-    if (this.#stopped) return
-    this.#again = this.#running
-    if (!this.#running && this.#failed) this.#cycle()
+    this.#again = this.running
+    return !this.running && this.failed
   }
 
-  #tick() {
-    // from the first one on, so that no delay adds up; after a stall the missed ones are left out
-    const done = Math.floor((this.#clock.now() - this.#first + EARLY) / this.#interval)
-    const next = this.#first + (done + 1) * this.#interval
-    this.#timer = this.#clock.setTimer(() => this.#tick(), Math.max(0, next - this.#clock.now()))
-    if (this.#running) this.#overruns++
-    else this.#cycle()
+  /** @param {number} cycles that were left out */
+  missed(cycles) {
+    this.overruns += cycles
   }
 
-  #cycle() {
-    const start = this.#clock.now()
-    this.#running = true
-    this.#plc.read(this.#items, { priority: PRIORITY.POLL }).then(
-      results => this.#report(results, start),
-      error => this.#report([], start, error)
-    )
+  begin() {
+    this.running = true
+    this.#start = this.#clock.now()
+    this.#asked = this.#items
   }
 
-  /** @param {any[]} results @param {number} start @param {any} [error] */
-  #report(results, start, error = null) {
-    this.#running = false
-    if (this.#stopped) return
+  /** @param {any[]} readings one per point of the items that were asked for */
+  end(readings) {
+    this.#report(resultsOf(this.#asked, readings), null)
+  }
+
+  /** @param {any} error nothing was read */
+  fail(error) {
+    this.#report([], error)
+  }
+
+  #report(results, error) {
+    this.running = false
+    this.took = this.#clock.now() - this.#start
+    if (this.stopped) return
     const failure = error ?? failureOf(results)
     const state = error ? error.code : stateOf(results)
     const changed = state !== this.#state
     this.#state = state
-    this.#failed = failure !== null
-    const again = this.#again && this.#failed
+    this.failed = failure !== null
+    const again = this.#again && this.failed
     this.#again = false
-    this.#callback(results, { failure, changed, ms: this.#clock.now() - start, overruns: this.#overruns })
-    if (again && !this.#stopped) this.#cycle()
+    this.#callback(results, { failure, changed, ms: this.took, overruns: this.overruns })
+    if (again && !this.stopped) this.repeat(this)
   }
+
+  /** Set by its owner: asks for another cycle at once. @type {(own: Subscription) => void} */
+  repeat = () => {}
 }
 
 /**

@@ -1,8 +1,10 @@
 'use strict'
 const { masterIds } = require('../codec/nx/ids')
 const { readDialog, writeDialog } = require('../codec/nx/dialog')
+const { realClock } = require('../line')
 const { announced } = require('./announced')
 const { createMasterWatch } = require('./master-watch')
+const { RepeatWatch } = require('./repeat-watch')
 
 /**
  * One query of an NX station over the line: the master's ID, the repeat by RR, and what is remembered about the station.
@@ -22,6 +24,7 @@ class Talk {
   #memory
   #ids
   #watch
+  #repeatWatch
   #counts = { requests: 0, answers: 0, nonStandardAcks: 0, repeats: 0, seenStation: /** @type {number|null} */ (null) }
   // a repeat by RR has no ID of its own that tells late from right, so whatever disturbs the line ends it
   #forget = () => void (this.#memory.lastRead = null)
@@ -29,9 +32,10 @@ class Talk {
   #disturbed = ({ event }) => void (event === 'audit' || this.#forget())
 
   /**
-   * @param {{ lease: any, health: import('./health').Health, settings: any, random: () => number }} options random: 0 to 1, for the first master ID
+   * @param {{ lease: any, clock?: any, health: import('./health').Health, settings: any, random: () => number }} options random: 0 to 1, for the
+   *   first master ID
    */
-  constructor({ lease, health, settings, random }) {
+  constructor({ lease, clock = realClock, health, settings, random }) {
     this.#lease = lease
     this.#health = health
     this.#settings = settings
@@ -39,6 +43,7 @@ class Talk {
     const { masterIds: ids } = settings
     this.#ids = masterIds({ ids, start: Math.floor(random() * ids.length), memory: this.#memory.ids })
     this.#watch = createMasterWatch({ memory: this.#memory.master, found: id => this.#tellFixed(id) })
+    this.#repeatWatch = new RepeatWatch({ clock, memory: this.#memory, found: () => this.#tellNoRepeat() })
     lease.on('state', this.#forget)
     lease.on('event', this.#disturbed)
   }
@@ -49,6 +54,13 @@ class Talk {
     const cause = `station ${station} answers to the master ID ${shown} only`
     const remedy = `Set the master IDs of the PLC to ${shown} alone.`
     this.#lease.line.report({ event: 'fixedMasterId', station, id, cause, remedy })
+  }
+
+  #tellNoRepeat() {
+    const { station } = this.#settings
+    const cause = `station ${station} does not repeat a read by an RR alone: it is asked by queries, which takes some bytes more`
+    const remedy = 'Nothing is lost. Without "sole master" in its configuration the repeat is not even tried.'
+    this.#lease.line.report({ event: 'noRepeat', station, cause, remedy })
   }
 
   /** `{ requests, answers, nonStandardAcks, repeats, seenStation }` */
@@ -67,6 +79,20 @@ class Talk {
     const options = { station, priority, key, deadline, label: key, request: query }
     const make = () => ({ request: query, dialog: this.#reading(query, key) })
     return (await this.#health.run(make, options)).values
+  }
+
+  /** Whether reads may be repeated by their short form at all. */
+  get repeating() {
+    return this.#settings.soleMaster && this.#repeatWatch.allowed
+  }
+
+  /** Whether the station would repeat this read by its short form, as it stands. @param {any} query */
+  repeats(query) {
+    return this.repeating && this.#isLast(this.#memory.lastRead, keyOf(query))
+  }
+
+  #isLast(last, key) {
+    return last !== null && last.key === key && last.stray === this.#lease.line.strays
   }
 
   /**
@@ -93,14 +119,15 @@ class Talk {
   /** @param {any} query @param {string} key '': not to be repeated by an RR @param {number} [attempts] */
   *#reading(query, key, attempts = this.#settings.attempts) {
     const last = this.#begin()
-    const { soleMaster, masterIds: row } = this.#settings
+    const { masterIds: row } = this.#settings
     // with one ID there is nothing to find out
     const trial = row.length > 1 ? this.#watch.trial() : undefined
-    const same = soleMaster && key !== '' && last && last.key === key && last.stray === strayOf(this.#lease)
+    const same = this.repeating && key !== '' && this.#isLast(last, key)
     const options = { ...this.#options(trial), attempts, again: same ? last.master : undefined }
     const result = yield* this.#watched(readDialog(query, options), options)
     this.#note(result)
-    if (soleMaster) this.#memory.lastRead = { key, master: result.master, stray: strayOf(this.#lease) }
+    if (same) this.#repeatWatch.note(result.repeated)
+    if (this.repeating) this.#memory.lastRead = { key, master: result.master, stray: this.#lease.line.strays }
     return result
   }
 
@@ -164,12 +191,6 @@ class Talk {
     this.#lease.off('state', this.#forget)
     this.#lease.off('event', this.#disturbed)
   }
-}
-
-/** Grows with every byte that was not an answer. */
-const strayOf = lease => {
-  const { strayBytes = 0, skippedBytes = 0, crcErrors = 0 } = lease.line.stats()
-  return strayBytes + skippedBytes + crcErrors
 }
 
 /** Equal for equal queries: the same read that still waits is not queued twice. */

@@ -40,6 +40,8 @@ class Line extends EventEmitter {
   #calm
   #grace = null
   #missing = new Missing()
+  /** What those who poll expect to take of it; see load.js. @type {Set<() => import('./load').Load>} */
+  loads = new Set()
 
   /**
    * @param {{ name: string, settings: any, clock: any, make: () => any, random: () => number, claims: any,
@@ -140,6 +142,11 @@ class Line extends EventEmitter {
   /** Counters since the line was made; see docs/nodes.md. */
   stats() {
     return { ...this.#recorder.stats.snapshot(), waiting: this.#requests.size + this.#stream.size }
+  }
+
+  /** Grows with every byte that was not an answer. */
+  get strays() {
+    return this.#recorder.stats.strays
   }
 
   /** The last 200 frames, oldest first: `{ t, dir, station, bytes (hex), note }`. */

@@ -1,6 +1,7 @@
 'use strict'
 
 const { causeOf } = require('../error')
+const { totalLoad } = require('./load')
 const { Stats } = require('./stats')
 
 /** What stands in the statistics of a wire that nobody uses. */
@@ -85,9 +86,15 @@ class Monitor {
     return { period: Math.round(period), busyPercent: Math.round(10 * Math.min(100, Math.max(0, percent))) / 10 }
   }
 
+  /** What the polls should take: `busyPercent` as it is measured, `percent` with the silences before frames; asksMost: a name, or ''. */
+  #predicted() {
+    const { busyPercent, percent, most } = totalLoad(this.#line?.loads ?? new Set())
+    return { busyPercent, percent, asksMost: most?.name ?? '' }
+  }
+
   /**
    * How the line is now: all of `line.stats()`, and `line` (its name), `timestamp`, `state`, `reason` ({ code, cause, remedy } or null), `echo`,
-   * `demoted` (names of stations), `period` (ms since the last statistics), `busyPercent` (of that time), `evidence` (of evidence-file.js).
+   * `predicted` ({ busyPercent, percent, asksMost }), `demoted` (names of stations), `period` (ms since the last statistics), `busyPercent` (of that time), `evidence` (of evidence-file.js).
    */
   statistics() {
     const counts = this.#counts()
@@ -99,6 +106,7 @@ class Monitor {
       echo: this.#line?.echo ?? 'unknown',
       ...counts,
       ...this.#busyPercent(counts.busy),
+      predicted: this.#predicted(),
       demoted: demotedOf(counts.stations),
       evidence: this.#evidence.facts()
     }

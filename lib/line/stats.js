@@ -49,6 +49,12 @@ class Stats {
     memory.waits.add(ms)
   }
 
+  /** Grows with every byte that was not an answer. */
+  get strays() {
+    const { strayBytes, skippedBytes, crcErrors } = /** @type {any} */ (this.#line)
+    return strayBytes + skippedBytes + crcErrors
+  }
+
   #of(station) {
     let entry = this.#stations.get(station)
     if (!entry) {

@@ -6,6 +6,7 @@ const MOST = 200
 class Waits {
   #rows = new Float64Array(MOST)
   #count = 0
+  #sum = 0
 
   /** How many are known, 200 at most. */
   get size() {
@@ -14,7 +15,14 @@ class Waits {
 
   /** @param {number} ms */
   add(ms) {
-    this.#rows[this.#count++ % MOST] = ms
+    const at = this.#count++ % MOST
+    this.#sum += ms - this.#rows[at]
+    this.#rows[at] = ms
+  }
+
+  /** ms; null: there was none. */
+  get mean() {
+    return this.#count === 0 ? null : this.#sum / this.size
   }
 
   /** What 99 of 100 answers did not exceed, ms; null: there was none. */

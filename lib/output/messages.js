@@ -11,7 +11,7 @@
  * @property {string} [item]
  * @property {string} [label]
  * @property {string} [unit]
- * @property {number} [deadband]
+ * @property {number|string} [deadband]
  * @property {string} [code]
  * @property {string} [text]
  * @property {any[]} [elements]

@@ -1,6 +1,8 @@
 'use strict'
-const { planReads } = require('./reads')
+const { loadOf } = require('./prediction')
+const { planReads, servedValues } = require('./reads')
 const { planTableWrites, planTables } = require('./tables')
+const { together } = require('./together')
 const { planWrites } = require('./writes')
 
-module.exports = { planReads, planTableWrites, planTables, planWrites }
+module.exports = { loadOf, planReads, planTableWrites, planTables, planWrites, servedValues, together }

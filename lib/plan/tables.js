@@ -12,6 +12,9 @@ const { planRounds, roundsOf } = require('./writes')
  * @property {number} to absolute address after its last one
  * @property {number} read addresses in one request
  * @property {number} write addresses in one request; 0: it is only read
+ * @property {number} [unit] bits are asked for in multiples of this
+ * @property {number} [frameCost] byte times that a request costs beside its INFO
+ * @property {number} [scale] byte times of one byte of INFO
  *
  * @typedef {import('./reads').ReadPoint} ReadPoint
  * @typedef {import('./writes').WritePoint} WritePoint
@@ -21,7 +24,9 @@ const { planRounds, roundsOf } = require('./writes')
 
 const WIDE = 0x100000 // bytes: what one request takes is said by the table
 
-const limitsOf = ({ read, write }) => ({
+/** @param {Table} table */
+const limitsOf = ({ read, write, unit, frameCost, scale }) => ({
+  ...{ unit, frameCost, scale, bitBytes: 1 / 8 },
   readBits: read,
   readWords: read,
   readMixed: 0,
@@ -30,6 +35,10 @@ const limitsOf = ({ read, write }) => ({
   writeMixed: 0,
   info: WIDE
 })
+
+/** Holes of a table alone. */
+const holesIn = ({ kind, from, to }, holes = []) =>
+  holes.filter(hole => hole.kind === kind && from <= hole.start && hole.start < to)
 
 /** Which of the points stand in a table, with their places in the whole. */
 const within = ({ kind, from, to }, points) =>
@@ -41,15 +50,16 @@ const within = ({ kind, from, to }, points) =>
  * Requests that read every point once, neighbours in blocks, no request over two tables.
  * @param {ReadPoint[]} points
  * @param {Table[]} tables
+ * @param {{ holes?: import('./reads').Limits['holes'] }} [facts] what the station does not have
  * @returns {import('./reads').ReadRequest[]} `readBits` and `readWords` only
  * @throws {PlcError} FRAME_TOO_LONG one value does not fit into one request
  */
-const planTables = (points, tables) =>
+const planTables = (points, tables, { holes } = {}) =>
   tables.flatMap(table => {
     const own = within(table, points)
     const requests = planReads(
       own.map(({ point }) => point),
-      limitsOf(table)
+      { ...limitsOf(table), holes: holesIn(table, holes) }
     )
     return requests.map(request => ({
       ...request,

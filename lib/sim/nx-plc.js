@@ -24,6 +24,7 @@ const ERROR = { FUNCTION: 1, RANGE: 2, STRUCTURE: 3, NOT_PERFORMED: 4, TOO_LONG:
  * - `mode` `run` (default) or `program`: writes are not performed (error 4); `protect` ranges such as `['F0..F15']`: likewise
  * - `noService` unknown functions are answered with FN 00 instead of error 1
  * - `errorForm` `printed` ($8X) or `function` (the query's code + $80); `errorsAt` `query` (in place of the QA) or `response`
+ * - `noRepeat` an RR alone, which asks for a repetition: `silent` or `error` (1)
  * - `printedAck` every write is acknowledged with $A2 / $82, as the manual prints it
  * - `answersAs` the sender of an answer to 255: `own` number or `asked` (255)
  * - `onlyMaster` ignores every other sender
@@ -54,17 +55,25 @@ function createAnswerer(plc) {
     const asked = decodeQuery(frame)
     const replay = 'responseRequest' in asked
     if (replay && !last) return null
+    const again = replay && last.served
+    if (again && plc.noRepeat === 'silent') return null
     if (!replay) last = { fn: frame.fn, ...asked }
-    const { query, fn, steps } = last
-    const ends = { station: sender(plc, frame.to), master: frame.from, fn, steps }
-    const early = steps === 4 && !replay
-    const error = refuse ?? (early && plc.errorsAt !== 'query' ? 0 : judge(plc, last))
-    if (error) return fail(plc, error, ends)
-    if (early) return encodeAcknowledge(ends)
-    const values = execute(plc, query)
-    plc.onExecute?.({ at: plc.clock.now(), query, master: frame.from })
-    return acknowledged(plc, query, { values, ends })
+    // a 4-step query is carried out by its RR; the next one repeats
+    last.served = replay || last.steps === 2
+    return carryOut(plc, last, { frame, replay, refuse: again && plc.noRepeat ? ERROR.FUNCTION : refuse })
   }
+}
+
+function carryOut(plc, last, { frame, replay, refuse }) {
+  const { query, fn, steps } = last
+  const ends = { station: sender(plc, frame.to), master: frame.from, fn, steps }
+  const early = steps === 4 && !replay
+  const error = refuse ?? (early && plc.errorsAt !== 'query' ? 0 : judge(plc, last))
+  if (error) return fail(plc, error, ends)
+  if (early) return encodeAcknowledge(ends)
+  const values = execute(plc, query)
+  plc.onExecute?.({ at: plc.clock.now(), query, master: frame.from })
+  return acknowledged(plc, query, { values, ends })
 }
 
 function prepare(settings) {

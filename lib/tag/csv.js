@@ -53,7 +53,7 @@ const tagsFromCsv = text => {
     if (!columns.includes(needed))
       throw new PlcError('BAD_TAG', { name: 'table', reason: `the column ${needed} is missing` })
   }
-  const decimal = value => (separator === ',' ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*)$/, '$1.$2'))
+  const decimal = value => (separator === ',' ? value : value.replace(/^(\s*[+-]?\d*),(\d+\s*%?\s*)$/, '$1.$2'))
   const numeric = new Set(['scale', 'offset', 'deadband', 'min', 'max', 'maxStep'])
   return rows.map(cells => {
     /** @type {Record<string, string>} */

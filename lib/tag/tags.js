@@ -16,7 +16,7 @@ const { parseType } = require('./types')
  * @property {number} scale engineering value = raw × scale + offset
  * @property {number} offset
  * @property {string} unit
- * @property {number} deadband engineering units; 0: every change counts
+ * @property {number|string} deadband engineering units; 0: every change counts; `2%`: of the value that was reported last
  * @property {boolean} writable
  * @property {number|null} min engineering value
  * @property {number|null} max engineering value
@@ -49,6 +49,16 @@ const numberOf = (row, field, { name, fallback }) => {
   const number = Number(text)
   if (!Number.isFinite(number)) throw bad(name, `${field} is "${text}", not a number`)
   return number
+}
+
+const PERCENT = /^(\d+(?:\.\d+)?)\s*%$/
+
+/** Engineering units, or a text like `2%`. */
+const deadbandOf = (row, name) => {
+  const [, percent] = PERCENT.exec(textOf(row, 'deadband')) ?? []
+  if (percent === undefined) return numberOf(row, 'deadband', { name, fallback: 0 })
+  if (Number(percent) > 100) throw bad(name, `deadband is ${percent} %, 100 % at most`)
+  return Number(percent) === 0 ? 0 : `${Number(percent)}%`
 }
 
 const YES = new Set(['true', '1', 'yes', 'x', 'on'])
@@ -85,7 +95,7 @@ const readRow = (row, place) => {
     scale: numberOf(row, 'scale', { name, fallback: 1 }),
     offset: numberOf(row, 'offset', { name, fallback: 0 }),
     unit: textOf(row, 'unit'),
-    deadband: numberOf(row, 'deadband', { name, fallback: 0 }),
+    deadband: deadbandOf(row, name),
     writable: booleanOf(row, 'writable', name),
     min: numberOf(row, 'min', { name, fallback: null }),
     max: numberOf(row, 'max', { name, fallback: null }),

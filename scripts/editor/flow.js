@@ -35,7 +35,7 @@ const showMode = () => {
   $('.nxline-writes').toggle(writes())
   $('.nxline-both').toggle(value('mode') === 'both')
   // what counts depends on the mode: let it be judged again
-  ;['itemsType', 'target', 'interval'].forEach(name => field(name).trigger('change'))
+  ;['itemsType', 'target', 'interval', 'report'].forEach(name => field(name).trigger('change'))
   fitList()
 }
 

@@ -13,6 +13,7 @@ const {
   value
 } = require('./form')
 const { attempt, describe, deviceName, parseItem, unsure } = require('./model')
+const { showCost, showSilence } = require('./cost')
 const { copyable, flex, note, say, suggest } = require('./widgets')
 const { errorText, t } = require('./texts')
 
@@ -104,6 +105,7 @@ const EXAMPLES = {
 
 /** What a message will look like, with the first items of the list. */
 const showExample = () => {
+  showCost(itemTexts())
   const known = notation()
   const items = itemTexts().flatMap(text => attempt(() => singles(parseItem(text, known)), []))
   const rows = items.slice(0, 3).map((item, index) => [item.name, sampleOf(item, index)])
@@ -135,6 +137,9 @@ const prepareReading = node => {
       showExample()
     })
     .trigger('change')
+  field('interval').on('input change', () => showCost(itemTexts()))
+  field('report').on('change', showSilence)
+  showSilence()
   ;[deviceProperty(), 'format', 'ranges', 'booleans'].forEach(name => field(name).on('change', judgeAll))
   judgeAll()
 }

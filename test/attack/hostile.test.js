@@ -71,10 +71,10 @@ describe('attack: hostile messages', () => {
 })
 
 describe('attack: a write that cannot be read back', () => {
-  // five words fit into a write, but not into the read that the CPU allows
+  // five words fit into a write, but into no read that the CPU allows
   for (const coalesce of [false, true]) {
     it(`has an outcome, ${coalesce ? 'the latest only' : 'each'}`, async () => {
-      const plc = bench({ plc: { access: 'write', limits: { readWords: 4 } } })
+      const plc = bench({ plc: { access: 'write', limits: { readWords: 4, readMixed: 4 } } })
       const entries = [{ item: 'K0:string[10]', value: 'setpoint 7' }]
       const { outcome, items } = await plc.run(plc.device.write(entries, { fixed: true, verify: true, coalesce }))
       assert.deepEqual([outcome, items[0].code], ['unknown', 'WRITE_UNKNOWN'])

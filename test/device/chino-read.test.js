@@ -93,8 +93,9 @@ describe('CHINO regulator: reading', () => {
     assert.deepEqual(
       b.slave.requests.map(hex => [hex.slice(2, 4), parseInt(hex.slice(8), 16)]),
       [
-        ['01', 20],
-        ['01', 10],
+        // 2 and 2 bytes, where 20 and 10 would be 3 and 2
+        ['01', 16],
+        ['01', 14],
         ['02', 16],
         ['02', 1],
         ['04', 4],
@@ -159,6 +160,17 @@ describe('CHINO regulator: reading', () => {
     await b.clock.advance(30000)
     await b.run(b.device.read(items, { priority: PRIORITY.POLL }))
     assert.equal(b.slave.requests.length, 5)
+  })
+
+  it('reads over addresses that nobody asked for; one that the device lacks is found, remembered and left out', async () => {
+    start({ slaves: [{ has: (table, address) => address !== 5 }] })
+    for (const at of [0, 3, 8, 10, 12]) b.slave.set('hr', at, at + 1)
+    const items = ['hr0', 'hr3', 'hr8', 'hr10', 'hr12']
+    assert.deepEqual(values(await b.read(items)), [1, 4, 9, 11, 13])
+    assert.equal(b.slave.requests[0], '0b030000000d', 'all at once')
+    b.slave.requests.length = 0
+    assert.deepEqual(values(await b.read(items)), [1, 4, 9, 11, 13])
+    assert.deepEqual(b.slave.requests.sort(), ['0b0300000004', '0b0300080005'])
   })
 
   it('a range that is longer than the device allows is split', async () => {

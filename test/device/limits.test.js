@@ -12,7 +12,7 @@ describe('a device at its limits', () => {
   const outcome = ({ outcome: word, code }) => [word, code]
 
   it('a value that is longer than a request is bad alone; all the others are read', async () => {
-    b = bench({ plc: { limits: { readWords: 8 } } })
+    b = bench({ plc: { limits: { readWords: 8, readMixed: 8 } } })
     const { device, run } = b
     const long = 'M0:string[40]'
     assert.deepEqual(codes(await run(device.read([long, 'M1', 'K0:float32', 'K10..K15']))), [

@@ -1,7 +1,17 @@
 'use strict'
 
 const assert = require('node:assert/strict')
-const { createPool, openC24Port, openChinoRegulator, openInconLink, openNxPlc } = require('../../lib')
+const {
+  createPool,
+  nxNotation,
+  openC24Port,
+  openChinoRegulator,
+  openInconLink,
+  openNxPlc,
+  parseItem
+} = require('../../lib')
+const { Grid } = require('../../lib/device/phases')
+const { Poller } = require('../../lib/device/poller')
 const { Subscription } = require('../../lib/device/subscription')
 const { createNxLine, createVirtualClock } = require('../../lib/sim')
 
@@ -73,31 +83,40 @@ describe('polling that ends while it reads', () => {
     const clock = createVirtualClock()
     const reads = []
     const told = []
-    const plc = { read: () => new Promise((resolve, reject) => reads.push({ resolve, reject })) }
-    const subscription = new Subscription({
-      plc,
+    const poller = new Poller({
       clock,
       random: () => 0,
-      items: ['M0'],
-      interval: 100,
-      callback: (results, cycle) => told.push([results.length, cycle.failure?.code ?? null, cycle.changed])
+      grid: new Grid(/** @type {any} */ ({}), 1),
+      read: () => new Promise((resolve, reject) => reads.push({ resolve, reject })),
+      estimate: () => 1,
+      overrun: () => {}
     })
-    return { clock, reads, told, subscription }
+    const items = [parseItem('M0', nxNotation({ areas: [] }))]
+    const callback = (results, cycle) => told.push([results.length, cycle.failure?.code ?? null, cycle.changed])
+    const subscription = new Subscription({ clock, items, interval: 100, callback })
+    subscription.repeat = own => poller.now([own])
+    poller.add(subscription, { immediately: true })
+    const again = () => poller.now([subscription].filter(each => each.again()))
+    const stop = () => {
+      subscription.stopped = true
+      poller.remove(subscription)
+    }
+    return { clock, reads, told, again, stop }
   }
   const settle = async clock => clock.advance(1)
 
   it('nothing is told after it was stopped, nor asked again', async () => {
-    const { clock, reads, told, subscription } = create()
+    const { clock, reads, told, again, stop } = create()
     await settle(clock)
-    subscription.stop()
-    subscription.again()
-    reads[0].resolve([])
+    stop()
+    again()
+    reads[0].resolve([{ raw: [1], at: 0 }])
     await clock.advance(1000)
     assert.deepEqual([told, reads.length, clock.pending()], [[], 1, 0])
   })
 
   it('a read that is rejected is a cycle without values, told by its code, as a change once', async () => {
-    const { clock, reads, told, subscription } = create()
+    const { clock, reads, told, again, stop } = create()
     const fault = Object.assign(new Error('closed'), { code: 'LINE_CLOSED' })
     await settle(clock)
     reads[0].reject(fault)
@@ -108,26 +127,25 @@ describe('polling that ends while it reads', () => {
       [0, 'LINE_CLOSED', true],
       [0, 'LINE_CLOSED', false]
     ])
-    subscription.again()
+    again()
     assert.equal(reads.length, 3, 'at once, since the last one failed')
-    subscription.again()
+    again()
     reads[2].reject(fault)
     await settle(clock)
     assert.equal(reads.length, 4, 'once more, since it was said while it ran')
-    reads[3].resolve([{ quality: 'good', value: 1 }])
+    reads[3].resolve([{ raw: [1], at: 0 }])
     await settle(clock)
-    subscription.again()
+    again()
     assert.equal(reads.length, 4)
-    subscription.stop()
+    stop()
   })
 
   it('a stop inside the callback ends it, also where it would be asked again', async () => {
-    const { clock, reads, subscription } = create()
+    const { clock, reads, again, stop } = create()
     await settle(clock)
-    subscription.again()
-    const { stop } = subscription
+    again()
     reads[0].reject(new Error('x'))
-    stop.call(subscription)
+    stop()
     await clock.advance(500)
     assert.equal(reads.length, 1)
   })

@@ -297,8 +297,10 @@ describe('line: monitor', () => {
     const known = Object.keys(lease.line.stats())
     await run(lease.release())
     const monitor = pool.monitor({ transport: 'simulated', wire, name: 'W' })
-    const { line, state, reason, echo, timestamp, stations, demoted, busyPercent, period, evidence, ...counts } =
+    const { line, state, reason, echo, timestamp, stations, demoted, busyPercent, period, ...more } =
       monitor.statistics()
+    const { predicted, evidence, ...counts } = more
+    assert.deepEqual(predicted, { busyPercent: 0, percent: 0, asksMost: '' })
     assert.deepEqual([line, state, reason, echo, timestamp], ['W', 'closed', null, 'unknown', clock.wall()])
     assert.deepEqual([stations, demoted, busyPercent, period, evidence.file], [{}, [], 0, 0, null])
     assert.deepEqual(Object.keys(counts).sort(), known.filter(name => name !== 'stations').sort())

@@ -200,6 +200,34 @@ describe('nx-read', () => {
     assert.deepEqual(out[1].payload, { M0: 7, M1: 1 })
   })
 
+  it('maxSilence: what has not changed is reported again', async () => {
+    const quiet = { items: ['M0'], interval: '20', report: 'changed' }
+    const { out } = await load([lineNode(wire), plcNode(), reader({ ...quiet, maxSilence: '60' })])
+    await until(() => out.length >= 3)
+    assert.deepEqual(
+      out.slice(0, 3).map(({ payload }) => payload),
+      Array(3).fill({ M0: 7 })
+    )
+    assert.ok(wire.plcs[0].counts.executed >= 5, String(wire.plcs[0].counts.executed))
+  })
+
+  it('asks for more than the line can do: who asks for most says so at deploy', async () => {
+    const slow = lineNode(wire, { baudRate: '4800' })
+    await load([
+      slow,
+      plcNode(),
+      reader({ items: ['M0'], interval: '1000' }),
+      reader({ id: 'read2', name: 'Much', items: ['W0..W127'], interval: '300' })
+    ])
+    const said = () => helper.log().args.filter(([{ msg }]) => /polls of this line want \d+ % of its time/.test(msg))
+    await until(() => said().length > 0, 'the advice')
+    assert.deepEqual(
+      said().map(([{ id }]) => id),
+      ['read2']
+    )
+    assert.match(said()[0][0].msg, /This node asks for most: 58\d ms every 300 ms, 19\d %. Poll every \d+ ms/)
+  })
+
   it('a polled error is reported once, when the state changes', async () => {
     const { out, caught } = await load([
       lineNode(wire),
@@ -254,8 +282,8 @@ describe('nx-read', () => {
       lineNode(wire, { latenessBound: '60' }),
       plcNode(quick),
       plcNode({ id: 'plc2', name: 'Press', station: 2, ...quick }),
-      reader({ items: ['M0'], interval: '20' }),
-      reader({ id: 'read2', plc: 'plc2', items: ['M0'], interval: '20' })
+      reader({ items: ['M0'], interval: '60' }),
+      reader({ id: 'read2', plc: 'plc2', items: ['M0'], interval: '60' })
     ])
     const warnings = { plc: [], plc2: [] }
     for (const id of Object.keys(warnings)) {

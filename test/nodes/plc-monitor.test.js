@@ -71,6 +71,9 @@ describe('plc-monitor', () => {
     assert.deepEqual(Object.keys(payload.stations), ['1'])
     assert.ok(payload.stations[1].latency.mean >= 0)
     assert.ok(payload.busyPercent >= 0 && payload.busyPercent <= 100)
+    const { predicted } = payload
+    assert.ok(predicted.percent > predicted.busyPercent && predicted.busyPercent > 0, JSON.stringify(predicted))
+    assert.equal(predicted.asksMost, 'read')
     await until(() => ends.size === 1, 'the end of the message')
     forget()
   })

@@ -127,6 +127,46 @@ describe('report by exception', () => {
     assert.deepEqual(seen, [10, 11.1, 9.9])
   })
 
+  it('a deadband in percent is of the value that was reported last', () => {
+    const report = createReport({ report: 'changed' })
+    const seen = [100, 101.9, 98.1, 102.1, 104.1, 104.2, -100, -101.9, -102.1, 0, 0.001].filter(
+      value => report([good('a', value, { deadband: '2%' })]).length > 0
+    )
+    assert.deepEqual(seen, [100, 102.1, 104.2, -100, -102.1, 0, 0.001])
+  })
+
+  it('maxSilence: what has not changed is reported again, at the cycle nearest to it', () => {
+    const report = createReport({ report: 'changed', maxSilence: 1000 })
+    const seen = []
+    for (let now = 0; now <= 4000; now += 300) {
+      seen.push(...report([good('a', 1), good('b', now < 600 ? 1 : 2)], now).map(({ name }) => `${name} ${now}`))
+    }
+    assert.deepEqual(
+      seen.filter(each => each.startsWith('a')),
+      ['a 0', 'a 900', 'a 1800', 'a 2700', 'a 3600']
+    )
+    assert.deepEqual(
+      seen.filter(each => each.startsWith('b')),
+      ['b 0', 'b 600', 'b 1500', 'b 2400', 'b 3300']
+    )
+  })
+
+  it('maxSilence with allOnChange: everything again; a longer cycle reports each time', () => {
+    const report = createReport({ report: 'allOnChange', maxSilence: 1000 })
+    const at = now => names(report([good('a', 1), good('b', 1)], now))
+    assert.deepEqual([0, 400, 800, 1200, 1600].map(at), [['a', 'b'], [], ['a', 'b'], [], ['a', 'b']])
+    const slow = createReport({ report: 'changed', maxSilence: 100 })
+    assert.deepEqual(
+      [0, 5000, 10000].map(now => slow([good('a', 1)], now).length),
+      [1, 1, 1]
+    )
+    const never = createReport({ report: 'changed' })
+    assert.deepEqual(
+      [0, 1e9].map(now => never([good('a', 1)], now).length),
+      [1, 0]
+    )
+  })
+
   it('judges arrays value by value, and single values alone', () => {
     const at = value => ({ ...range, value: [1, value], elements: [element('M0', 1), element('M1', value)] })
     const arrays = createReport({ report: 'changed' })

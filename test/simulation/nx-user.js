@@ -11,8 +11,8 @@ const W0 = 0x200
 const LIVE = Array.from({ length: 128 }, (_, n) => [{ at: `M${n}` }, { at: `W${n}` }]).flat()
 
 const createDevice = (row, common) => {
-  const { steps, soleMaster } = row
-  return createNxPlc({ ...common, steps, soleMaster, writableRanges: 'K0..K127' })
+  const { steps, soleMaster, settings } = row
+  return createNxPlc({ ...common, steps, soleMaster, ...settings, writableRanges: 'K0..K127' })
 }
 
 function randomWord(random) {

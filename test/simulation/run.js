@@ -124,6 +124,7 @@ const emptyReport = seed => ({
   misreported: [],
   executed: 0,
   cycles: 0,
+  repeats: 0,
   late: 0,
   events: {},
   recovered: 0,
@@ -158,6 +159,7 @@ function openSystem(system) {
   Object.assign(system, { lease, devices, common: health })
   startPolls(system)
   system.close = async () => {
+    report.repeats += devices.reduce((sum, { stats }) => sum + (stats.repeats ?? 0), 0)
     devices.forEach(device => device.close())
     await lease.release()
   }
@@ -211,6 +213,7 @@ async function chaos(system, open) {
  * @property {any[]} misreported writes whose outcome contradicts what the station did
  * @property {number} executed values that stations wrote, by their own count
  * @property {number} cycles of polled groups
+ * @property {number} repeats reads that came by an RR alone
  * @property {number} late late answers that the line has told of
  * @property {Record<string, number>} events of the line, by name
  * @property {number} recovered ms until every station and group gave good values, after the faults had stopped: the longest of all phases

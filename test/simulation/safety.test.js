@@ -3,7 +3,7 @@
 const assert = require('node:assert')
 const { freshSeed } = require('../../lib/sim')
 const { FAULTS, safetyRun } = require('./run')
-const { mixed, regulators } = require('./workload')
+const { SOLE, mixed, regulators } = require('./workload')
 
 /** The claims of a run; its report with the seed is the evidence. */
 function assertSafe(report) {
@@ -48,6 +48,14 @@ describe('safety: any faults, up to 30 % of all answers', function () {
       assertRecovered(report)
     })
   }
+
+  it('seed 10: polls of several requests, repeated by an RR alone, forwards and backwards', async () => {
+    const sole = { stations: SOLE, polls: true, pause: 2000 }
+    const report = await safetyRun({ seed: 10, exchanges: 1500, ...sole })
+    assertSafe(report)
+    assertRecovered(report)
+    assert.ok(report.repeats > 25, `${report.repeats} repeats`)
+  })
 
   const seed = freshSeed()
   it(`a fresh seed: ${seed}`, async () => {

@@ -15,6 +15,13 @@ const NX = [
   { device: 'nx', station: 191, steps: 4, soleMaster: true, turnaround: [2, 40] }
 ]
 
+/** All may repeat by an RR alone; frames are so short that a poll takes several of them. */
+const SOLE = NX.map(row => ({
+  ...row,
+  soleMaster: true,
+  settings: { limits: { readWords: 5, readBits: 20, readMixed: 4 } }
+}))
+
 /** Regulators in one protocol: every write function, a read bit unit, short frames. */
 const regulators = protocol =>
   [
@@ -138,6 +145,7 @@ function checkWrites({ writes, report, line }) {
 
 module.exports = {
   NX,
+  SOLE,
   checkWrites,
   createDevice,
   isHeld,

@@ -49,6 +49,9 @@ describe('tag table', () => {
     [[{ name: 'a', address: 'M0', scale: Infinity }], /scale/],
     [[{ name: 'a', address: 'M0', min: 5, max: 4 }], /min 5 is larger/],
     [[{ name: 'a', address: 'M0', deadband: -1 }], /deadband/],
+    [[{ name: 'a', address: 'M0', deadband: '-2%' }], /deadband/],
+    [[{ name: 'a', address: 'M0', deadband: '101%' }], /100 % at most/],
+    [[{ name: 'a', address: 'M0', deadband: '%' }], /deadband is "%", not a number/],
     [[{ name: 'a', address: 'M0.1', scale: 2 }], /cannot be scaled/],
     [[{ name: 'a', address: 'M0.1', max: 1 }], /no min and max/],
     [[{ name: 'a', address: 'M0.1', maxStep: 1 }], /no maxStep/],
@@ -63,6 +66,13 @@ describe('tag table', () => {
   for (const [rows, reason] of wrong) {
     it(`refuses ${JSON.stringify(rows)}`, () => assert.throws(() => read(rows), badTag(reason)))
   }
+
+  it('a deadband may be a percentage', () => {
+    const deadband = text => read([{ name: 'a', address: 'M0', deadband: text }]).get('a')?.deadband
+    assert.deepEqual(['2%', ' 2.50 % ', '0%', '100%', '2'].map(deadband), ['2%', '2.5%', 0, '100%', 2])
+    const [row] = tagsFromCsv('name;address;deadband\na;M0;2,5%')
+    assert.equal(row.deadband, '2.5%')
+  })
 
   it('may be called like the address that it stands for', () => {
     assert.equal(read([{ name: 'K5', address: 'K5' }]).size, 1)

@@ -1,7 +1,7 @@
 'use strict'
 
 /**
- * Runs the tests: all of test/ but test/system, two files at a time; or what is named in the arguments.
+ * Runs the tests: all of test/ but test/system, three files at a time; or what is named in the arguments.
  *   npm test                              everything
  *   npm test -- test/levels.test.js       these files or folders
  *   npm test -- -g "late answer"          all other arguments go to mocha
@@ -14,7 +14,8 @@ const os = require('node:os')
 const path = require('node:path')
 
 const root = path.join(__dirname, '..')
-const JOBS = 2
+// more than there may be cores: many wait for ports
+const JOBS = 3
 /** Long ones go first: the last one would leave a processor idle. */
 const LONG = ['test/simulation/safety.test.js', 'test/consumer/types.test.js', 'test/demo.test.js'].map(path.normalize)
 

@@ -48,7 +48,7 @@ const RUNS = {
   killedMaster: () => killedMaster({ rounds: 5 }),
   stoppedNx: () => stoppedStation({ rounds: 4 }),
   stoppedChino: () => stoppedStation({ rounds: 4, device: 'chino' }),
-  mixed: () => mixedLine({ seconds: 15, rates: RATES.map(each => ({ ...each, rate: 4 * each.rate })) }),
+  mixed: () => mixedLine({ seconds: 25, rates: RATES.map(each => ({ ...each, rate: 4 * each.rate })) }),
   redeploys: () => redeploys({ rounds: 20, calm: true, baudRate: 9600 })
 }
 
@@ -126,7 +126,7 @@ describe('system: faults on real ports', function () {
   it('noise, damage, lateness, strangers and losses on a line of four stations: no value is wrong, whatever the fault', async () => {
     const { wrong, values, writes, faults } = await ended('mixed')
     assert.deepEqual(wrong, [])
-    assert.ok(values > 50 && writes > 1, `${values} values, ${writes} writes`)
+    assert.ok(values > 50 && writes > 5, `${values} values, ${writes} writes`)
     assert.ok(Object.keys(faults).length >= 7, JSON.stringify(faults))
   })
 

@@ -9,6 +9,9 @@ const { Silence } = require('./silence')
 const LAG = 10
 const MOST_GRACE = 250
 
+/** So much later (ms) an error may be seen than it has come; always long before its time is over. */
+const MOST_LATER = 25
+
 const TOLERANCE = 0.001
 
 /**
@@ -110,12 +113,21 @@ class Exchange {
   }
 
   /** Tells the transport how long nobody needs to read: after sending, and after a part of the answer. */
-  #hint({ need }, fresh) {
-    const count = need - this.#rx.bytes.length
+  #hint(job, fresh) {
+    const count = this.#awaited(job) - this.#rx.bytes.length
+    if (count <= 0) return
     const from = fresh ? this.#lastByteAt : this.#sendEnd
     // our own echo comes while we send
     const echo = this.#rx.bytes.length === 0 ? this.#echo.expected : 0
-    if (count > 0) this.#link.hint(count, from + (count - echo) * this.#times.character)
+    this.#link.hint(count, from + (count - echo) * this.#times.character)
+  }
+
+  /** What is worth reading: not the shortest error first, where the whole answer is hardly longer. */
+  #awaited({ step, need, ours }) {
+    if (ours || !step.usual) return need
+    const usual = step.usual + this.#echo.expected
+    const later = (usual - need) * this.#times.character
+    return later > 0 && later <= Math.min(MOST_LATER, this.#times.slack / 2) ? usual : need
   }
 
   /** Bytes arrived. @param {Buffer} bytes */

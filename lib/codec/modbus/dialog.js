@@ -1,7 +1,7 @@
 'use strict'
 const { PlcError } = require('../../error')
 const { decodeAnswer, describeQuery, expectedAnswer } = require('./answer')
-const { fromAscii, toAscii } = require('./ascii')
+const { asciiLength, fromAscii, toAscii } = require('./ascii')
 const { exceptionByCode, exceptionError } = require('./exceptions')
 const { EXCEPTION, functionOf, readFunction } = require('./functions')
 const { answerTo } = require('./match')
@@ -175,7 +175,9 @@ function* exchange(query, talk) {
   const { send: rtu, read } = talk.exchange(query, station)
   const send = protocol === 'ascii' ? toAscii(rtu) : rtu
   facts.attempts++
-  const bytes = yield { send, match: answerTo(query, { station, protocol, sent: send }), timeout, gap }
+  const { length } = expectedAnswer(query, station)
+  const usual = protocol === 'ascii' ? asciiLength(length) : length
+  const bytes = yield { send, match: answerTo(query, { station, protocol, sent: send }), timeout, gap, usual }
   const frame = protocol === 'ascii' ? fromAscii(bytes) : bytes
   if (!frame) throw new PlcError('BAD_ANSWER', { station, reason: 'it is no frame' })
   if (frame[1] & EXCEPTION) throw exceptionError(frame[2], { station, fn: query.fn, address: names(query) })

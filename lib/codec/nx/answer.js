@@ -1,6 +1,6 @@
 'use strict'
 const { PlcError } = require('../../error')
-const { encodeFrame } = require('./frame')
+const { encodeFrame, OVERHEAD } = require('./frame')
 const { ACKNOWLEDGE, ANSWER, ERRORS, NO_SERVICE, answerCode, functionOf } = require('./functions')
 const { answerInfoLength, decodeValues, encodeValues } = require('./query')
 
@@ -31,6 +31,14 @@ function expectedAnswers(query, { steps = 2, phase = 'query', nonStandardAck = f
   if (!list) known.set(key, (list = listAnswers(row, length, { steps, phase, nonStandardAck })))
   return list
 }
+
+/**
+ * Bytes of the answer to a query, if it is no error.
+ * @param {Query} query
+ * @param {{ steps?: 2|4, phase?: Phase }} [options]
+ * @returns {number}
+ */
+const answerLength = (query, options) => expectedAnswers(query, options)[0].length + OVERHEAD
 
 /** @type {Map<number, Expected[]>} */
 const known = new Map()
@@ -139,6 +147,7 @@ function encodeError(error, { station, master, fn, printed = true }) {
 const encodeNoService = ({ station, master }) => encodeFrame({ to: master, from: station, fn: NO_SERVICE, info: [0] })
 
 module.exports = {
+  answerLength,
   expectedAnswers,
   classify,
   readAnswer,

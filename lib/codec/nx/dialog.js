@@ -1,6 +1,6 @@
 'use strict'
 const { PlcError } = require('../../error')
-const { readAnswer } = require('./answer')
+const { answerLength, readAnswer } = require('./answer')
 const { openFrame } = require('./frame')
 const { functionOf } = require('./functions')
 const { DEFAULT_IDS, masterIds } = require('./ids')
@@ -195,7 +195,8 @@ function* exchange(talk, master, phase) {
   const { seenStation } = facts
   const match = answerTo(query, { ...ends, phase, nonStandardAck, seenStation, sent: send, late })
   if (talk.reached === 'nothing') talk.reached = 'query'
-  const bytes = yield { send, match, timeout, gap }
+  const usual = answerLength(query, { steps, phase })
+  const bytes = yield { send, match, timeout, gap, usual }
   talk.reached = 'answer'
   const frame = openFrame(bytes)
   facts.seenStation = frame.from

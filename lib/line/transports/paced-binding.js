@@ -10,10 +10,28 @@ const isAgain = error => error.code === 'EAGAIN' || error.code === 'EWOULDBLOCK'
 const canceled = () => Object.assign(new Error('Port is not open'), { canceled: true })
 const hungUp = () => Object.assign(new Error('the port has hung up'), { disconnect: true })
 
-const readOnce = (fd, { buffer, offset, length }) =>
-  new Promise((resolve, reject) => {
-    fs.read(fd, buffer, offset, length, null, (error, bytesRead) => (error ? reject(error) : resolve(bytesRead)))
-  })
+/**
+ * In the call itself: the descriptor does not block, and a trip through the thread pool costs several times as much.
+ * @returns {number} bytes; -1: there is nothing yet
+ */
+const readNow = (fd, { buffer, offset, length }) => {
+  try {
+    return fs.readSync(fd, buffer, offset, length, null)
+  } catch (error) {
+    if (isAgain(error)) return -1
+    throw error
+  }
+}
+
+/** @returns {number} how many bytes the system took at once */
+const writeNow = (fd, bytes) => {
+  try {
+    return fs.writeSync(fd, bytes, 0, bytes.length, null)
+  } catch {
+    // full, or gone: the wrapped write waits, or says what it is
+    return 0
+  }
+}
 
 /** Resolves when the descriptor can be read, or has hung up. */
 const readable = poller =>
@@ -27,9 +45,10 @@ function createPace(clock) {
     hint: when => {
       at = when
     },
+    /** A promise, or null: it is time. */
     sleep: () => {
       const wait = at - EARLY - clock.now()
-      if (!(wait > 0)) return Promise.resolve()
+      if (!(wait > 0)) return null
       return new Promise(resolve => {
         const timer = clock.setTimer(() => wake(), wait)
         wake = () => {
@@ -60,12 +79,18 @@ function pacedBinding(binding, pace) {
     open: async options => {
       const port = await binding.open(options)
       const plainRead = port.read.bind(port)
+      const plainWrite = port.write.bind(port)
       const close = port.close.bind(port)
+      const isPlain = () => typeof port.fd !== 'number' || !port.poller
       port.read = async (buffer, offset, length) => {
+        if (!isPlain()) return { buffer, bytesRead: await read(port, { buffer, offset, length }, pace) }
         await pace.sleep()
         if (!port.isOpen) throw canceled()
-        if (typeof port.fd !== 'number' || !port.poller) return plainRead(buffer, offset, length)
-        return { buffer, bytesRead: await read(port, { buffer, offset, length }) }
+        return plainRead(buffer, offset, length)
+      }
+      port.write = async bytes => {
+        const taken = isPlain() ? 0 : writeNow(port.fd, bytes)
+        if (taken < bytes.length) await plainWrite(bytes.subarray(taken))
       }
       port.close = () => {
         pace.stop()
@@ -76,18 +101,20 @@ function pacedBinding(binding, pace) {
   }
 }
 
-async function read(port, target) {
+/** The system tells when there is something; but after a sleep there should be, so it is not even asked. */
+async function read(port, target, pace) {
   for (;;) {
+    const slept = pace.sleep()
+    await (slept ?? readable(port.poller))
     if (!port.isOpen) throw canceled()
-    try {
-      const bytesRead = await readOnce(port.fd, target)
-      if (bytesRead === 0) throw hungUp()
-      return bytesRead
-    } catch (error) {
+    let bytesRead = readNow(port.fd, target)
+    if (bytesRead < 0 && slept) {
+      await readable(port.poller)
       if (!port.isOpen) throw canceled()
-      if (!isAgain(error)) throw error
+      bytesRead = readNow(port.fd, target)
     }
-    await readable(port.poller)
+    if (bytesRead === 0) throw hungUp()
+    if (bytesRead > 0) return bytesRead
   }
 }
 

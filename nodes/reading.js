@@ -62,7 +62,7 @@ const summary = results => {
   return { phase: /** @type {'read'} */ ('read'), count: results.length, bad: bad.length, code: bad[0]?.code }
 }
 
-/** Sends results: the first message is the one that asked, so that its other properties go on. */
+/** Sends results: the first message is the one that asked, if one did, so that its other properties go on. */
 const createDelivery = (RED, { settings, deviceNode, device }) => {
   const { format, badValues, ranges, booleans } = settings
   const { label, simulated } = deviceNode
@@ -71,6 +71,8 @@ const createDelivery = (RED, { settings, deviceNode, device }) => {
   const deliver = (results, msg, send) => {
     const parts = messagesOf(report(results, device.time), { ...shape, id: RED.util.generateId() })
     if (parts.length === 0) return
+    // nobody asked: nothing that would have to go on
+    if (!msg) return send([parts])
     delete msg.bad
     const carriers = parts.map((_, index) => (index === 0 ? msg : RED.util.cloneMessage(msg)))
     send([parts.map((fields, index) => Object.assign(carriers[index], fields))])
@@ -152,7 +154,7 @@ const startReading = (RED, session, { named = false } = {}) => {
     }
     const results = fixed.complete(answers)
     show(results)
-    deliver(results, {}, messages => node.send(messages))
+    deliver(results, null, messages => node.send(messages))
     const fault = changed ? faultOf(answers) : null
     if (fault) node.error(fault, { device: session.deviceNode.label })
   }

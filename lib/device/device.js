@@ -3,8 +3,9 @@ const { PlcError } = require('../error')
 const { PRIORITY, realClock } = require('../line')
 const { elementsOf } = require('../tag/convert')
 const { distinctNames, parseItem, splitType } = require('../tag/item')
+const { Lists } = require('./lists')
 const { Load } = require('./load')
-const { checkTotal, pointsOf, resultsOf, widthOf } = require('./points')
+const { checkTotal, resultsOf, widthOf } = require('./points')
 const { Grid } = require('./phases')
 const { Poller } = require('./poller')
 const { Reader } = require('./reader')
@@ -28,6 +29,7 @@ class Device {
   #poller
   #load
   #known = new Map()
+  #lists = new Lists(items => this.#readable(items))
   #weight = 0
   #closed = false
 
@@ -191,9 +193,9 @@ class Device {
    *   {@link Device.item}
    */
   async read(items, { priority = PRIORITY.ASK } = {}) {
-    const parsed = this.#readable(items)
+    const list = this.#lists.of(items)
     const fresh = priority !== PRIORITY.POLL
-    return resultsOf(parsed, await this.#reader.read(pointsOf(parsed), { priority, fresh }))
+    return resultsOf(list.items, await this.#reader.read(list.points, { priority, fresh }))
   }
 
   /**

@@ -90,21 +90,23 @@ const rawOf = (item, index, raw) => {
 
 /** @returns {any} */
 const elementOf = (item, index, reading) => {
-  const { name } = item.elements[index]
-  const base = { name, timestamp: reading.at }
+  // that of a single value goes by the item's own name
+  const name = item.range ? item.elements[index].name : item.name
+  const timestamp = reading.at
   if ('error' in reading) {
-    return { ...base, value: null, quality: 'bad', code: reading.error.code, text: reading.error.message }
+    const { code, message } = reading.error
+    return { name, timestamp, value: null, quality: 'bad', code, text: message }
   }
   const answer = decodeValue(item, rawOf(item, index, reading.raw))
-  if ('code' in answer) return { ...base, value: null, quality: 'bad', code: answer.code, text: answer.text }
-  return { ...base, value: answer.value, quality: 'good' }
+  if ('code' in answer) return { name, timestamp, value: null, quality: 'bad', code: answer.code, text: answer.text }
+  return { name, timestamp, value: answer.value, quality: 'good' }
 }
 
 /** @returns {any} */
 const arrayOf = (item, elements) => {
   const bad = elements.find(element => element.quality === 'bad')
-  const value = elements.every(element => element.quality === 'bad') ? null : elements.map(element => element.value)
-  const timestamp = Math.min(...elements.map(element => element.timestamp))
+  const value = bad && elements.every(element => element.quality === 'bad') ? null : elements.map(each => each.value)
+  const timestamp = elements.reduce((least, element) => Math.min(least, element.timestamp), Infinity)
   const result = { name: item.name, value, quality: bad ? 'bad' : 'good', timestamp, elements }
   return bad ? { ...result, code: bad.code, text: bad.text } : result
 }
@@ -119,10 +121,15 @@ const arrayOf = (item, elements) => {
 const resultsOf = (items, readings) => {
   let next = 0
   return items.map(item => {
-    const elements = item.elements.map((_, index) => elementOf(item, index, readings[next++]))
-    const result = item.range ? arrayOf(item, elements) : { ...elements[0], name: item.name }
+    const result = item.range
+      ? arrayOf(
+          item,
+          item.elements.map((_, index) => elementOf(item, index, readings[next++]))
+        )
+      : elementOf(item, 0, readings[next++])
     const { text, label, unit, tag } = item
-    return { ...result, item: text, label, unit, deadband: tag ? tag.deadband : 0 }
+    // it is ours and new: no copy for each of a thousand
+    return Object.assign(result, { item: text, label, unit, deadband: tag ? tag.deadband : 0 })
   })
 }
 

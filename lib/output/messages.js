@@ -100,18 +100,28 @@ const listMessage = (results, shape) => {
   return [{ payload, topic: shape.device ?? '', ...common(results, shape) }]
 }
 
+/** The same as `common` of one result: there may be thousands of them each second. */
+const commonOfOne = (result, { device = '', simulated }) => {
+  const { timestamp, quality } = result
+  const fields = /** @type {Record<string, any>} */ ({ timestamp, quality, device })
+  if (quality === 'bad') Object.assign(fields, badOf([result]))
+  if (simulated) fields.simulated = true
+  return fields
+}
+
 /** One message per result. `parts` lets a join node put them together again by itself. */
 const messagePer = (results, shape, payloadOf) => {
   const id = shape.id ?? `${shape.device ?? ''} ${Math.max(...results.map(({ timestamp }) => timestamp))}`
-  return results.map((result, index) => ({
-    payload: payloadOf(result),
-    topic: result.name,
-    ...common([result], shape),
-    item: result.item,
-    ...named('label', result.label),
-    ...named('unit', result.unit),
-    parts: { id, index, count: results.length, type: 'object', key: result.name }
-  }))
+  const count = results.length
+  return results.map((result, index) => {
+    const { name, item, label, unit } = result
+    const fields = { payload: payloadOf(result), topic: name }
+    const message = Object.assign(fields, commonOfOne(result, shape), { item })
+    if (label) message.label = label
+    if (unit) message.unit = unit
+    message.parts = { id, index, count, type: 'object', key: name }
+    return message
+  })
 }
 
 const envelopeOf = (result, shape) => ({

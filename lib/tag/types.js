@@ -23,10 +23,22 @@ const { toBoolean, toNumber, toText } = require('./convert')
 
 const MOST_STRING = 256 // 128 words: what one frame can read
 
+const WORD_BYTES = 2
+const LONGEST_NUMBER = 2 // words
+
+/** Where numbers are put together, one after the other: thousands are decoded each second. */
+const VIEWS = Array.from(
+  { length: LONGEST_NUMBER + 1 },
+  (_, words) => new DataView(new ArrayBuffer(words * WORD_BYTES))
+)
+
+/** To be read at once: the next call writes over it. */
 const viewOf = (words, order) => {
-  const view = new DataView(new ArrayBuffer(words.length * 2))
-  const inOrder = order === 'high' ? [...words].reverse() : words
-  inOrder.forEach((word, index) => view.setUint16(index * 2, word, true))
+  const { length } = words
+  const view = VIEWS[length]
+  for (let index = 0; index < length; index++) {
+    view.setUint16(index * WORD_BYTES, words[order === 'high' ? length - 1 - index : index], true)
+  }
   return view
 }
 

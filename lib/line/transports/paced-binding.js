@@ -2,8 +2,8 @@
 
 const fs = require('node:fs')
 
-/** The read wakes this much (ms) before the bytes can be there: timers are late, never early. */
-const EARLY = 1
+/** Timers count whole ms: what is nearer than one (ms) is waited for by the descriptor itself. */
+const LEAST = 1
 
 const isAgain = error => error.code === 'EAGAIN' || error.code === 'EWOULDBLOCK' || error.code === 'EINTR'
 
@@ -47,8 +47,9 @@ function createPace(clock) {
     },
     /** A promise, or null: it is time. */
     sleep: () => {
-      const wait = at - EARLY - clock.now()
-      if (!(wait > 0)) return null
+      // the nearest whole ms: half of them a little late, and after the others what is still missing is hardly a byte
+      const wait = Math.round(at - clock.now())
+      if (!(wait >= LEAST)) return null
       return new Promise(resolve => {
         const timer = clock.setTimer(() => wake(), wait)
         wake = () => {

@@ -1,0 +1,102 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { Echo } = require('../../lib/line/echo')
+const { Exchange } = require('../../lib/line/exchange')
+const { createVirtualClock } = require('../../lib/sim')
+const toy = require('./support/toy')
+
+const CHARACTER = 1 // ms
+const SENT = 4 // bytes of a query
+const SHORTEST = 5
+
+/** An exchange over a transport of the test; `hints`: for how many bytes nobody needs to read until when. */
+const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off') }) => {
+  const clock = createVirtualClock()
+  const bench = { clock, hints: /** @type {number[][]} */ ([]), ended: /** @type {any[]} */ ([]) }
+  const link = {
+    name: 'test',
+    write: (_bytes, done) => done(),
+    hint: (count, at) => bench.hints.push([count, at]),
+    waiting: () => false,
+    stray() {},
+    skipped() {},
+    echoed() {}
+  }
+  const times = { character: CHARACTER, gap: 0, slack }
+  const settings = { jamTime: 1000, writeTimeout: 1000 }
+  const exchange = new Exchange({ clock, settings, times, echo: new Echo(echo, clock.now), link })
+  const step = { send: toy.query(5), match: toy.answerTo(5), timeout: 200, usual }
+  const done = (error, answer) => bench.ended.push(error?.code ?? answer.length)
+  exchange.start(step, { gap: 0, station: 5, sent() {}, done })
+  const come = async (ms, bytes) => {
+    await clock.advance(ms - clock.now())
+    exchange.data(bytes)
+  }
+  return Object.assign(bench, { come, last: () => bench.hints.at(-1) })
+}
+
+describe('what the transport is told to wait for', () => {
+  const answer = toy.answer(5, Array(20).fill(7))
+
+  it('the shortest answer, then what its header says', async () => {
+    const bench = begin({ usual: undefined })
+    assert.deepEqual(bench.last(), [SHORTEST, SENT + SHORTEST])
+    await bench.come(10, answer.subarray(0, 1))
+    assert.deepEqual(bench.last(), [SHORTEST - 1, 10 + SHORTEST - 1])
+    await bench.come(14, answer.subarray(1, 5))
+    assert.deepEqual(bench.last(), [20, 14 + 20])
+    await bench.come(34, answer.subarray(5))
+    assert.deepEqual(bench.ended, [25])
+  })
+
+  it('the usual answer at once, where an error would be seen hardly later', async () => {
+    const bench = begin({ usual: 25 })
+    assert.deepEqual(bench.last(), [25, SENT + 25])
+    await bench.come(10, answer.subarray(0, 1))
+    assert.deepEqual(bench.last(), [24, 34])
+    await bench.come(34, answer.subarray(1))
+    assert.deepEqual([bench.ended, bench.hints.length], [[25], 2])
+  })
+
+  it('not where it would be seen more than 25 ms later, or half the slack', () => {
+    for (const [options, count] of /** @type {[any, number][]} */ ([
+      [{ usual: SHORTEST + 25 }, 30],
+      [{ usual: SHORTEST + 26 }, SHORTEST],
+      [{ usual: SHORTEST + 10, slack: 20 }, 15],
+      [{ usual: SHORTEST + 11, slack: 20 }, SHORTEST],
+      [{ usual: SHORTEST }, SHORTEST]
+    ])) {
+      assert.deepEqual(begin(options).last(), [count, SENT + count], JSON.stringify(options))
+    }
+  })
+
+  it('an error that came meanwhile is seen then, and its header is believed, not what is usual', async () => {
+    const bench = begin({ usual: 25 })
+    await bench.come(10, answer.subarray(0, 1))
+    await bench.come(34, toy.answer(5, []).subarray(1))
+    assert.deepEqual(bench.ended, [SHORTEST])
+    const longer = begin({ usual: 8 })
+    await longer.come(10, answer.subarray(0, 6))
+    assert.deepEqual(longer.last(), [19, 29])
+  })
+
+  it('an answer that stops is over by its own time, before which the transport has read', async () => {
+    const bench = begin({ usual: 30 })
+    await bench.come(200, answer.subarray(0, 1))
+    const [, until] = /** @type {number[]} */ (bench.last())
+    await bench.clock.advance(until - bench.clock.now())
+    assert.deepEqual(bench.ended, [])
+    await bench.clock.advance(100)
+    assert.deepEqual(bench.ended, ['TIMEOUT'])
+  })
+
+  it('behind our own echo', async () => {
+    const bench = begin({ usual: 25, echo: 'on' })
+    assert.deepEqual(bench.last(), [SENT + 25, SENT + 25])
+    await bench.come(1, toy.query(5).subarray(0, 1))
+    assert.deepEqual(bench.last(), [SENT + 24, 1 + SENT + 24])
+    await bench.come(29, Buffer.concat([toy.query(5).subarray(1), answer.subarray(0, 20)]))
+    assert.deepEqual(bench.last(), [5, 34])
+  })
+})

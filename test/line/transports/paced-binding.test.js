@@ -1,0 +1,158 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const fs = require('node:fs')
+const { createPace, pacedBinding } = require('../../../lib/line/transports/paced-binding')
+const { createVirtualClock } = require('../../../lib/sim')
+
+const fault = code => Object.assign(new Error(code), { code })
+const soon = () => new Promise(resolve => setImmediate(resolve))
+
+describe('binding that reads by wire time', () => {
+  const { readSync, writeSync } = fs
+  let clock, pace, log, results
+
+  /** What the system says to the next calls, in turn: a number of bytes, or an error. */
+  const system = name => {
+    log.push(name)
+    const result = results.shift()
+    if (result instanceof Error) throw result
+    return result
+  }
+  beforeEach(() => {
+    clock = createVirtualClock()
+    pace = createPace(clock)
+    log = []
+    results = []
+    fs.readSync = /** @type {any} */ (() => system('read'))
+    fs.writeSync = /** @type {any} */ ((_fd, bytes) => system(`write ${bytes.length}`))
+  })
+  afterEach(() => Object.assign(fs, { readSync, writeSync }))
+
+  const open = (extra = {}) => {
+    const port = {
+      isOpen: true,
+      fd: 77,
+      told: /** @type {any[]} */ ([]),
+      poller: {
+        once(event, done) {
+          log.push(event)
+          port.told.push(done)
+        }
+      },
+      read: async () => ({ bytesRead: 99 }),
+      write: async bytes => void log.push(`wrapped ${bytes.toString('hex')}`),
+      close: async () => void (port.isOpen = false),
+      ...extra
+    }
+    return pacedBinding({ open: async () => port }, pace).open({})
+  }
+  const buffer = Buffer.alloc(16)
+  /** @returns {{ end: any }} how a read ends, when it does */
+  const reading = port => {
+    const read = { end: /** @type {any} */ (null) }
+    port.read(buffer, 0, 16).then(
+      ({ bytesRead }) => (read.end = bytesRead),
+      error => (read.end = error)
+    )
+    return read
+  }
+
+  it('writes in the call itself', async () => {
+    const port = await open()
+    results = [5]
+    await port.write(Buffer.from('0102030405', 'hex'))
+    assert.deepEqual(log, ['write 5'])
+  })
+
+  for (const [what, result, rest] of /** @type {[string, any, string][]} */ ([
+    ['takes a part', 3, '0405'],
+    ['takes nothing now', fault('EAGAIN'), '0102030405'],
+    ['fails: the wrapped write says how', fault('EIO'), '0102030405']
+  ])) {
+    it(`hands on what is left where the system ${what}`, async () => {
+      const port = await open()
+      results = [result]
+      await port.write(Buffer.from('0102030405', 'hex'))
+      assert.deepEqual(log, ['write 5', `wrapped ${rest}`])
+    })
+  }
+
+  it('asks for bytes only when the descriptor has some', async () => {
+    const port = await open()
+    const read = reading(port)
+    await soon()
+    assert.deepEqual([log, read.end], [['readable'], null])
+    results = [fault('EAGAIN'), 4]
+    port.told[0](null)
+    await soon()
+    assert.deepEqual([log, read.end], [['readable', 'read', 'readable'], null])
+    port.told[1](null)
+    await soon()
+    assert.equal(read.end, 4)
+  })
+
+  it('after a sleep there should be some; else the descriptor tells', async () => {
+    const port = await open()
+    pace.hint(clock.now() + 20.4)
+    const read = reading(port)
+    await clock.advance(19)
+    assert.deepEqual([log, read.end], [[], null])
+    results = [fault('EAGAIN'), 4]
+    await clock.advance(1)
+    await soon()
+    assert.deepEqual([log, read.end], [['read', 'readable'], null])
+    port.told[0](null)
+    await soon()
+    assert.equal(read.end, 4)
+    assert.equal(clock.pending(), 0)
+  })
+
+  it('does not sleep for less than a millisecond', async () => {
+    const port = await open()
+    pace.hint(clock.now() + 0.4)
+    reading(port)
+    await soon()
+    assert.deepEqual([log, clock.pending()], [['readable'], 0])
+  })
+
+  for (const slept of [false, true]) {
+    it(`takes zero bytes for a hang-up, ${slept ? 'after a sleep, too' : 'never for nothing'}`, async () => {
+      const port = await open()
+      if (slept) pace.hint(clock.now() + 20)
+      results = [0]
+      const read = reading(port)
+      await clock.advance(20)
+      port.told[0]?.(null)
+      await soon()
+      assert.equal(read.end.disconnect, true)
+    })
+  }
+
+  it('fails as the system says', async () => {
+    const port = await open()
+    results = [fault('EIO')]
+    const read = reading(port)
+    await soon()
+    port.told[0](null)
+    await soon()
+    assert.equal(read.end.code, 'EIO')
+  })
+
+  it('that is closed while it sleeps has ended, without a timer', async () => {
+    const port = await open()
+    pace.hint(clock.now() + 1000)
+    const read = reading(port)
+    await port.close()
+    await soon()
+    assert.deepEqual([read.end.canceled, clock.pending(), log], [true, 0, []])
+  })
+
+  it('uses the wrapped read and write where there is no descriptor', async () => {
+    const port = await open({ fd: undefined })
+    const read = reading(port)
+    await port.write(Buffer.from('01', 'hex'))
+    await soon()
+    assert.deepEqual([log, read.end], [['wrapped 01'], 99])
+  })
+})

@@ -41,6 +41,7 @@ const sorted = (device, texts) => {
   const valid = rows.filter(({ problem }) => !problem).map(({ text }) => text)
   const problems = rows.flatMap(({ problem }) => problem ?? [])
   if (valid.length === 0) throw problems[0]
+  if (problems.length === 0) return { valid, complete: results => results, problems }
   const complete = results => {
     const rest = results[Symbol.iterator]()
     const timestamp = results[0]?.timestamp ?? Date.now()

@@ -10,6 +10,9 @@ const { performance } = require('node:perf_hooks')
  */
 const realClock = Object.freeze({
   now: () => performance.now(),
+  linger: until => {
+    while (performance.now() < until);
+  },
   wall: () => Date.now(),
   setTimer: (fn, ms) => setTimeout(fn, Math.max(0, Math.ceil(ms))),
   clearTimer: timer => clearTimeout(timer)
@@ -29,6 +32,7 @@ const timeText = wall => (Math.abs(wall) <= LAST ? new Date(wall).toISOString() 
  * @typedef {object} Clock
  * @property {() => number} now monotonic ms, with fractions
  * @property {() => number} wall epoch ms
+ * @property {(until: number) => void} [linger] keeps the process until then: for parts of a ms, which timers do not count. A clock without it is exact
  * @property {(fn: () => void, ms: number) => any} setTimer
  * @property {(timer: any) => void} clearTimer any number of times; undefined is allowed
  */

@@ -5,6 +5,8 @@ const TOLERANCE = 0.001
 /** A silence whose end is seen this late (ms) may hide bytes that nobody has read yet: they get a moment to come in. */
 const LATE = 5
 const BREATH = 5
+/** A timer takes whole ms and fires a little later: for so little (ms) above them, of which most has then gone by, it is not set a whole ms longer. */
+const PART = 0.4
 
 /** Waits until the wire has been silent for a while. One wait at a time. */
 class Silence {
@@ -29,15 +31,28 @@ class Silence {
   }
 
   #look(wait) {
-    const now = this.#clock.now()
     const free = this.#quietSince() + wait.ms
+    const now = this.#nowOr(free)
     // once: a process that is always late must go on all the same
     const overslept = !wait.rested && now - Math.max(free, wait.wokenAt) >= LATE
     if (now >= free - TOLERANCE && !overslept) return wait.done()
     if (wait.givenUp(now)) return
-    const rest = overslept ? BREATH : free - now
+    const rest = overslept ? BREATH : this.#inTimers(free - now)
     const next = { ...wait, rested: wait.rested || overslept, wokenAt: now + rest }
     this.#timer = this.#clock.setTimer(() => this.#look(next), rest)
+  }
+
+  /** Where the time is all but over, that time. */
+  #nowOr(free) {
+    const now = this.#clock.now()
+    if (!this.#clock.linger || now >= free || free - now > PART) return now
+    this.#clock.linger(free)
+    return this.#clock.now()
+  }
+
+  #inTimers(rest) {
+    const whole = Math.floor(rest)
+    return this.#clock.linger && whole > 0 && rest - whole <= PART ? whole : rest
   }
 
   stop() {

@@ -1003,10 +1003,18 @@ var nxlineSerialPlc = (() => {
       var { PlcError } = require_error();
       var { toBoolean, toNumber, toText } = require_convert();
       var MOST_STRING = 256;
+      var WORD_BYTES = 2;
+      var LONGEST_NUMBER = 2;
+      var VIEWS = Array.from(
+        { length: LONGEST_NUMBER + 1 },
+        (_, words) => new DataView(new ArrayBuffer(words * WORD_BYTES))
+      );
       var viewOf = (words, order) => {
-        const view = new DataView(new ArrayBuffer(words.length * 2));
-        const inOrder = order === "high" ? [...words].reverse() : words;
-        inOrder.forEach((word, index) => view.setUint16(index * 2, word, true));
+        const { length } = words;
+        const view = VIEWS[length];
+        for (let index = 0; index < length; index++) {
+          view.setUint16(index * WORD_BYTES, words[order === "high" ? length - 1 - index : index], true);
+        }
         return view;
       };
       var wordsOf = (view, order) => {
@@ -4547,29 +4555,32 @@ var nxlineSerialPlc = (() => {
         return readBackValues({ address: item.address + index, through: item.throughWord }, raw);
       };
       var elementOf = (item, index, reading) => {
-        const { name } = item.elements[index];
-        const base = { name, timestamp: reading.at };
+        const name = item.range ? item.elements[index].name : item.name;
+        const timestamp = reading.at;
         if ("error" in reading) {
-          return { ...base, value: null, quality: "bad", code: reading.error.code, text: reading.error.message };
+          const { code, message } = reading.error;
+          return { name, timestamp, value: null, quality: "bad", code, text: message };
         }
         const answer = decodeValue(item, rawOf(item, index, reading.raw));
-        if ("code" in answer) return { ...base, value: null, quality: "bad", code: answer.code, text: answer.text };
-        return { ...base, value: answer.value, quality: "good" };
+        if ("code" in answer) return { name, timestamp, value: null, quality: "bad", code: answer.code, text: answer.text };
+        return { name, timestamp, value: answer.value, quality: "good" };
       };
       var arrayOf = (item, elements) => {
         const bad = elements.find((element) => element.quality === "bad");
-        const value = elements.every((element) => element.quality === "bad") ? null : elements.map((element) => element.value);
-        const timestamp = Math.min(...elements.map((element) => element.timestamp));
+        const value = bad && elements.every((element) => element.quality === "bad") ? null : elements.map((each) => each.value);
+        const timestamp = elements.reduce((least, element) => Math.min(least, element.timestamp), Infinity);
         const result = { name: item.name, value, quality: bad ? "bad" : "good", timestamp, elements };
         return bad ? { ...result, code: bad.code, text: bad.text } : result;
       };
       var resultsOf = (items, readings) => {
         let next = 0;
         return items.map((item) => {
-          const elements = item.elements.map((_, index) => elementOf(item, index, readings[next++]));
-          const result = item.range ? arrayOf(item, elements) : { ...elements[0], name: item.name };
+          const result = item.range ? arrayOf(
+            item,
+            item.elements.map((_, index) => elementOf(item, index, readings[next++]))
+          ) : elementOf(item, 0, readings[next++]);
           const { text, label, unit, tag } = item;
-          return { ...result, item: text, label, unit, deadband: tag ? tag.deadband : 0 };
+          return Object.assign(result, { item: text, label, unit, deadband: tag ? tag.deadband : 0 });
         });
       };
       module.exports = {

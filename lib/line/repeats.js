@@ -11,7 +11,10 @@ const LONG = 50
 /** Pseudo-terminals and adapters that have no speed of their own, on Linux and macOS: what is behind them may be a program. */
 const NO_WIRE = /^\/dev\/(pts\/|ttys\d|ttyACM|ttyGS|cu\.usbmodem|tty\.usbmodem)/
 
-/** So many steps in a row that failed after an answer was dropped: it was none that is old, the speed is another one. */
+/**
+ * So many steps that failed after an answer was dropped: it was none that is old, the speed is another one. On a wire they count in a row; elsewhere
+ * only the right answer behind a dropped one shows that dropping was right.
+ */
 const MISTAKES = 2
 
 /**
@@ -83,7 +86,7 @@ class Repeats {
   answered(frame, query) {
     if (this.#isEarly(frame, query)) this.#unpaced = true
     else if (this.#wire || (frame.length + query.length) * this.#character >= LONG) this.#timely++
-    this.#mistakes = 0
+    if (this.#wire || this.#dropped) this.#mistakes = 0
     if (this.#taken.length < this.#sure().all) this.#taken.push(frame)
   }
 

@@ -207,6 +207,42 @@ describe('what is known of answers that were taken', () => {
     assert.equal(repeats.isOld(A, early), false)
   })
 
+  const good = at(SOONEST)
+  const mistake = repeats => {
+    repeats.sent()
+    const old = repeats.isOld(A, early)
+    repeats.failed()
+    return old
+  }
+  const answer = (repeats, query = good) => {
+    repeats.sent()
+    repeats.answered(B, query)
+  }
+
+  it('where there may be no wire also with answers between them, unless the right one came behind the dropped one', () => {
+    const loose = created('serial', '/dev/pts/3')
+    for (let n = 0; n < 4; n++) loose.answered(A, good)
+    assert.equal(mistake(loose), true)
+    answer(loose)
+    loose.sent()
+    assert.equal(loose.isOld(A, early), true)
+    loose.answered(B, good)
+    assert.equal(mistake(loose), true, 'proven right in between: one again')
+    answer(loose)
+    assert.equal(mistake(loose), true)
+    answer(loose)
+    assert.equal(loose.isOld(A, early), false)
+  })
+
+  it('on a wire a lost answer behind an old one, now and then, changes nothing', () => {
+    const sure = paced(A)
+    for (let n = 0; n < 5; n++) {
+      assert.equal(mistake(sure), true)
+      answer(sure)
+    }
+    assert.equal(sure.isOld(A, early), true)
+  })
+
   it('another opening: nothing is known', () => {
     const repeats = paced(A)
     repeats.opened('')

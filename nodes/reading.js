@@ -50,17 +50,25 @@ const sorted = (device, texts) => {
   return { valid, complete, problems }
 }
 
+const isBad = result => result.quality === 'bad'
+
 /** What is wrong with results, as one error; null if nothing is. */
 const faultOf = results => {
-  const bad = results.filter(({ quality }) => quality === 'bad')
+  const bad = results.filter(isBad)
   if (bad.length === 0) return null
   const more = bad.length < results.length ? ` (${bad.length} of ${results.length} items are bad)` : ''
   return withCode(bad[0].code, bad[0].text + more)
 }
 
 const summary = results => {
-  const bad = results.filter(({ quality }) => quality === 'bad')
+  const bad = results.filter(isBad)
   return { phase: /** @type {'read'} */ ('read'), count: results.length, bad: bad.length, code: bad[0]?.code }
+}
+
+/** Nobody asked, so nothing has to go on. Of messages sent together Node-RED copies all but the first, of single ones none. */
+const sendOneByOne = (RED, messages, send) => {
+  const _msgid = RED.util.generateId()
+  for (const message of messages) send(Object.assign(message, { _msgid }))
 }
 
 /** Sends results: the first message is the one that asked, if one did, so that its other properties go on. */
@@ -72,8 +80,7 @@ const createDelivery = (RED, { settings, deviceNode, device }) => {
   const deliver = (results, msg, send) => {
     const parts = messagesOf(report(results, device.time), { ...shape, id: RED.util.generateId() })
     if (parts.length === 0) return
-    // nobody asked: nothing that would have to go on
-    if (!msg) return send([parts])
+    if (!msg) return sendOneByOne(RED, parts, send)
     delete msg.bad
     const carriers = parts.map((_, index) => (index === 0 ? msg : RED.util.cloneMessage(msg)))
     send([parts.map((fields, index) => Object.assign(carriers[index], fields))])

@@ -12,6 +12,7 @@ const STATUS_INTERVAL = 1000
  * @param {any} RED @param {any} node
  */
 const statusDisplay = (RED, node) => {
+  /** @type {Record<string, any>} */
   let state = {}
   let shown = ''
   let simulated = false
@@ -26,6 +27,8 @@ const statusDisplay = (RED, node) => {
   return {
     /** @param {import('./status').State} change */
     update(change) {
+      // a poll says the same many times a second
+      if (Object.keys(change).every(key => change[key] === state[key])) return
       state = { ...state, ...change }
       throttle(state)
     },

@@ -132,8 +132,8 @@ class Connection {
     }
   }
 
-  hint(count, at) {
-    this.#transport?.hint(count, at)
+  hint(count, at, behind) {
+    this.#transport?.hint(count, at, behind)
   }
 
   /** Whether bytes have come that nobody has seen yet. */

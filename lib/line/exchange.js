@@ -36,7 +36,7 @@ class Exchange {
 
   /**
    * @param {{ clock: any, settings: any, times: any, echo: any, link: any }} options
-   *   link: `{ name, write(bytes, done), hint(count, at), waiting(), stray(bytes), skipped(bytes), echoed(bytes) }`
+   *   link: `{ name, write(bytes, done), hint(count, at, behind?), waiting(), stray(bytes), skipped(bytes), echoed(bytes) }`
    */
   constructor({ clock, settings, times, echo, link }) {
     this.#clock = clock
@@ -116,10 +116,12 @@ class Exchange {
   #hint(job, fresh) {
     const count = this.#awaited(job) - this.#rx.bytes.length
     if (count <= 0) return
-    const from = fresh ? this.#lastByteAt : this.#sendEnd
+    const { character } = this.#times
+    if (fresh) return this.#link.hint(count, this.#lastByteAt + count * character)
     // our own echo comes while we send
     const echo = this.#rx.bytes.length === 0 ? this.#echo.expected : 0
-    this.#link.hint(count, from + (count - echo) * this.#times.character)
+    const latest = this.#sendEnd + job.step.timeout
+    this.#link.hint(count, this.#sendEnd + (count - echo) * character, { rest: (count - 1) * character, latest })
   }
 
   /** What is worth reading: not the shortest error first, where the whole answer is hardly longer. */

@@ -96,7 +96,7 @@ class Line extends EventEmitter {
       recorder: this.#recorder,
       memories,
       write: (bytes, done) => this.#connection.write(bytes, done),
-      hint: (count, at) => this.#connection.hint(count, at),
+      hint: (count, at, behind) => this.#connection.hint(count, at, behind),
       waiting: () => this.#connection.waiting
     }
   }

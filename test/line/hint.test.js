@@ -13,11 +13,19 @@ const SHORTEST = 5
 /** An exchange over a transport of the test; `hints`: for how many bytes nobody needs to read until when. */
 const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off') }) => {
   const clock = createVirtualClock()
-  const bench = { clock, hints: /** @type {number[][]} */ ([]), ended: /** @type {any[]} */ ([]) }
+  const bench = {
+    clock,
+    hints: /** @type {number[][]} */ ([]),
+    behind: /** @type {any[]} */ ([]),
+    ended: /** @type {any[]} */ ([])
+  }
   const link = {
     name: 'test',
     write: (_bytes, done) => done(),
-    hint: (count, at) => bench.hints.push([count, at]),
+    hint: (count, at, behind) => {
+      bench.hints.push([count, at])
+      bench.behind.push(behind)
+    },
     waiting: () => false,
     stray() {},
     skipped() {},
@@ -48,6 +56,13 @@ describe('what the transport is told to wait for', () => {
     assert.deepEqual(bench.last(), [20, 14 + 20])
     await bench.come(34, answer.subarray(5))
     assert.deepEqual(bench.ended, [25])
+  })
+
+  it('behind the first byte so many more, as long as the answer is in time; what goes on, nothing but itself', async () => {
+    const bench = begin({ usual: 25 })
+    assert.deepEqual(bench.behind, [{ rest: 24 * CHARACTER, latest: SENT + 200 }])
+    await bench.come(10, answer.subarray(0, 1))
+    assert.equal(bench.behind[1], undefined)
   })
 
   it('the usual answer at once, where an error would be seen hardly later', async () => {

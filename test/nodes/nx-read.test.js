@@ -186,6 +186,23 @@ describe('nx-read', () => {
     )
   })
 
+  it('polled, message: those of one poll belong together, and to nothing else', async () => {
+    const { out } = await load([
+      lineNode(wire),
+      plcNode(),
+      reader({ items: ['M0', 'M1'], interval: '20', format: 'message' })
+    ])
+    await until(() => out.length >= 4)
+    const [first, second, third, fourth] = out.map(({ _msgid, topic, payload, parts }) => ({
+      text: `${topic} ${payload} ${parts.index}`,
+      id: _msgid,
+      sequence: parts.id
+    }))
+    assert.deepEqual([first.text, second.text, third.text, fourth.text], ['M0 7 0', 'M1 8 1', 'M0 7 0', 'M1 8 1'])
+    assert.ok(first.id && first.id === second.id && third.id === fourth.id && first.id !== third.id)
+    assert.ok(first.sequence === second.sequence && third.sequence === fourth.sequence)
+  })
+
   it('report allOnChange sends everything, but only if something changed', async () => {
     const { out } = await load([
       lineNode(wire),

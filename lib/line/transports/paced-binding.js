@@ -37,13 +37,28 @@ const writeNow = (fd, bytes) => {
 const readable = poller =>
   new Promise((resolve, reject) => poller.once('readable', error => (error ? reject(error) : resolve(undefined))))
 
+const ALL = { rest: 0, latest: -Infinity }
+
 /** When the next bytes can be there at the earliest; who sleeps until then can be woken. */
 function createPace(clock) {
   let at = -Infinity
+  let more = ALL
   let wake = null
   return {
-    hint: when => {
+    /** @param {number} when @param {{ rest: number, latest: number }} [behind] see `hint` of a transport */
+    hint: (when, behind = ALL) => {
       at = when
+      more = behind
+    },
+    /** The first byte has come. */
+    begun: () => {
+      const when = clock.now() + more.rest
+      if (when <= more.latest) at = when
+      more = ALL
+    },
+    /** Something was read: what comes now is something else. */
+    done: () => {
+      more = ALL
     },
     /** A promise, or null: it is time. */
     sleep: () => {
@@ -61,6 +76,7 @@ function createPace(clock) {
     },
     stop: () => {
       at = -Infinity
+      more = ALL
       wake?.()
     }
   }
@@ -102,20 +118,23 @@ function pacedBinding(binding, pace) {
   }
 }
 
+/** Resolves when bytes have come, and those that belong to the first of them can be there, too. */
+const begun = async (poller, pace) => {
+  await readable(poller)
+  pace.begun()
+  await pace.sleep()
+}
+
 /** The system tells when there is something; but after a sleep there should be, so it is not even asked. */
 async function read(port, target, pace) {
   for (;;) {
-    const slept = pace.sleep()
-    await (slept ?? readable(port.poller))
+    await (pace.sleep() ?? begun(port.poller, pace))
     if (!port.isOpen) throw canceled()
-    let bytesRead = readNow(port.fd, target)
-    if (bytesRead < 0 && slept) {
-      await readable(port.poller)
-      if (!port.isOpen) throw canceled()
-      bytesRead = readNow(port.fd, target)
-    }
+    const bytesRead = readNow(port.fd, target)
     if (bytesRead === 0) throw hungUp()
-    if (bytesRead > 0) return bytesRead
+    if (bytesRead < 0) continue
+    pace.done()
+    return bytesRead
   }
 }
 

@@ -153,8 +153,8 @@ class SerialTransport {
     this.#port.write(bytes, finish)
   }
 
-  hint(_count, at) {
-    this.#pace.hint(at)
+  hint(_count, at, behind) {
+    this.#pace.hint(at, behind)
   }
 
   /** Whether bytes have come that nobody has seen yet: the wire is not silent then. */

@@ -108,6 +108,79 @@ describe('binding that reads by wire time', () => {
     assert.equal(clock.pending(), 0)
   })
 
+  describe('where the first byte tells when the others can be there', () => {
+    const begun = async (hint = { rest: 20, latest: 100 }) => {
+      const port = await open()
+      pace.hint(clock.now() + 0.4, hint)
+      results = [1, 1]
+      const read = reading(port)
+      await soon()
+      await clock.advance(10)
+      port.told[0](null)
+      await soon()
+      return { port, read }
+    }
+
+    it('reads then, and not at the first one', async () => {
+      const { read } = await begun()
+      await clock.advance(19)
+      assert.deepEqual([log, read.end], [['readable'], null])
+      await clock.advance(1)
+      await soon()
+      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], 1, 0])
+    })
+
+    it('but not later than it may be', async () => {
+      const { read } = await begun({ rest: 20, latest: clock.now() + 29 })
+      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], 1, 0])
+    })
+
+    it('just in time', async () => {
+      const { read } = await begun({ rest: 20, latest: clock.now() + 30 })
+      assert.deepEqual([log, read.end, clock.pending()], [['readable'], null, 1])
+    })
+
+    for (const [what, next] of /** @type {[string, (seen: any) => any][]} */ ([
+      ['what comes behind them is read when it comes', async () => {}],
+      ['a new hint counts alone', async () => pace.hint(clock.now(), undefined)]
+    ])) {
+      it(what, async () => {
+        const { port, read } = await begun()
+        await clock.advance(20)
+        await soon()
+        assert.equal(read.end, 1)
+        await next(port)
+        const again = reading(port)
+        await soon()
+        port.told[1](null)
+        await soon()
+        assert.deepEqual([again.end, clock.pending()], [1, 0])
+      })
+    }
+
+    it('a byte read after a sleep is not the first one', async () => {
+      const port = await open()
+      pace.hint(clock.now() + 20, { rest: 20, latest: 100 })
+      results = [1, 1]
+      reading(port)
+      await clock.advance(20)
+      await soon()
+      const again = reading(port)
+      await soon()
+      port.told[0](null)
+      await soon()
+      assert.deepEqual([again.end, clock.pending()], [1, 0])
+    })
+
+    it('a hang-up is seen then', async () => {
+      const { port, read } = await begun()
+      port.isOpen = false
+      pace.stop()
+      await soon()
+      assert.deepEqual([read.end.canceled, clock.pending()], [true, 0])
+    })
+  })
+
   it('does not sleep for less than a millisecond', async () => {
     const port = await open()
     pace.hint(clock.now() + 0.4)

@@ -6,6 +6,18 @@ const os = require('node:os')
 const path = require('node:path')
 const { notAPort } = require('../../../lib/line/transports/device-file')
 
+const no = () => false
+/** What the system says about a name. */
+const said = extra => ({
+  rdev: 0,
+  isFile: no,
+  isDirectory: no,
+  isFIFO: no,
+  isSocket: no,
+  isBlockDevice: no,
+  ...extra
+})
+
 describe('line: what may be opened as a serial port', () => {
   it('on Windows a name, not a path', () => {
     for (const name of ['COM1', 'COM12', '\\\\.\\COM12', '\\\\?\\COM3', 'CNCA0', 'com-a'])
@@ -27,6 +39,48 @@ describe('line: what may be opened as a serial port', () => {
     } finally {
       fs.rmSync(folder, { recursive: true })
     }
+  })
+
+  it('nor a pipe, a socket, or a disk', () => {
+    const { statSync } = fs
+    const kinds = {
+      isFIFO: 'it is a pipe, not a serial port',
+      isSocket: 'it is a socket, not a serial port',
+      isBlockDevice: 'it is a block device, not a serial port'
+    }
+    try {
+      for (const [kind, reason] of Object.entries(kinds)) {
+        fs.statSync = /** @type {any} */ (() => said({ [kind]: () => true }))
+        assert.equal(notAPort('/dev/a', 'linux'), reason)
+      }
+    } finally {
+      Object.assign(fs, { statSync })
+    }
+  })
+
+  it('what the kernel counts a device among is found by its number', () => {
+    const { statSync, readlinkSync } = fs
+    const asked = []
+    try {
+      fs.readlinkSync = /** @type {any} */ (
+        name => {
+          asked.push(name)
+          if (name.includes('/4:')) return '../../../class/tty'
+          throw Object.assign(new Error('ENOENT'), { code: 'ENOENT' })
+        }
+      )
+      // makedev of glibc: major 4, minor 64 (ttyS0); 136, 300 (a terminal of a program); 511, 0x12345
+      for (const rdev of [0x440, 0x10882c, 0x1231ff45]) {
+        fs.statSync = /** @type {any} */ (() => said({ rdev }))
+        assert.equal(notAPort('/dev/a', 'linux'), '')
+      }
+    } finally {
+      Object.assign(fs, { statSync, readlinkSync })
+    }
+    assert.deepEqual(
+      asked,
+      ['4:64', '136:300', `511:${0x12345}`].map(number => `/sys/dev/char/${number}/subsystem`)
+    )
   })
 
   it('nor a device of another kind', function () {

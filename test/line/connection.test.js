@@ -64,8 +64,9 @@ describe('line: one connection after the other', () => {
     made[0].handlers.opened()
     assert.equal(connection.waiting, false)
     connection.check({ all: 1, known: 1 })
-    connection.hint(3, 9)
-    assert.deepEqual(told, ['opened', ['hint', 3, 9]])
+    const behind = { rest: 2, latest: 40 }
+    connection.hint(3, 9, behind)
+    assert.deepEqual(told, ['opened', ['hint', 3, 9, behind]])
     made[0].waiting = true
     made[0].check = missing => told.push(missing)
     connection.check(7)

@@ -66,6 +66,32 @@ describe('intake', () => {
     assert.equal(intake.waiting, false)
   })
 
+  it('never holds a source that brings a kilobyte each millisecond, or less', async () => {
+    for (const [length, apart] of [
+      [1024, 1],
+      [100, 10]
+    ]) {
+      const { intake, lengths, holds, clock } = bench()
+      for (let n = 0; n < 30; n++) {
+        intake.take(bytesFrom(n, length))
+        await clock.advance(apart)
+      }
+      assert.deepEqual([holds, lengths()], [[], new Array(30).fill(length)])
+    }
+  })
+
+  it('a moment with more than that is held each time', async () => {
+    const { intake, lengths, holds, clock } = bench()
+    await clock.advance(10)
+    intake.take(bytesFrom(0, 1))
+    for (let n = 0; n < 20; n++) intake.take(bytesFrom(n, 100))
+    assert.equal(
+      lengths().reduce((a, b) => a + b),
+      1024
+    )
+    assert.deepEqual(holds, [true])
+  })
+
   it('messages count as so many bytes: sixteen each millisecond, on and on', async () => {
     let messages = 0
     const { intake, clock } = bench(bytes => {
@@ -76,6 +102,7 @@ describe('intake', () => {
     // the first chunk tells that it is a line of messages
     messages = 0
     intake.take(Buffer.alloc(4096, 0x41))
+    assert.equal(messages, 0)
     let most = 0
     for (let n = 0; n < 400; n++) {
       const before = messages

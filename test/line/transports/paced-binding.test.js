@@ -92,6 +92,21 @@ describe('binding that reads by wire time', () => {
     assert.equal(read.end, 4)
   })
 
+  for (const code of ['EAGAIN', 'EWOULDBLOCK', 'EINTR']) {
+    it(`takes ${code} for nothing yet`, async () => {
+      const port = await open()
+      const read = reading(port)
+      await soon()
+      results = [fault(code), 4]
+      port.told[0](null)
+      await soon()
+      assert.deepEqual([log, read.end], [['readable', 'read', 'readable'], null])
+      port.told[1](null)
+      await soon()
+      assert.equal(read.end, 4)
+    })
+  }
+
   it('after a sleep there should be some; else the descriptor tells', async () => {
     const port = await open()
     pace.hint(clock.now() + 20.4)
@@ -181,6 +196,14 @@ describe('binding that reads by wire time', () => {
     })
   })
 
+  it('sleeps for a millisecond', async () => {
+    const port = await open()
+    pace.hint(clock.now() + 1)
+    reading(port)
+    await soon()
+    assert.deepEqual([log, clock.pending()], [[], 1])
+  })
+
   it('does not sleep for less than a millisecond', async () => {
     const port = await open()
     pace.hint(clock.now() + 0.4)
@@ -198,7 +221,7 @@ describe('binding that reads by wire time', () => {
       await clock.advance(20)
       port.told[0]?.(null)
       await soon()
-      assert.equal(read.end.disconnect, true)
+      assert.deepEqual([read.end.disconnect, read.end.message], [true, 'the port has hung up'])
     })
   }
 
@@ -218,7 +241,33 @@ describe('binding that reads by wire time', () => {
     const read = reading(port)
     await port.close()
     await soon()
-    assert.deepEqual([read.end.canceled, clock.pending(), log], [true, 0, []])
+    assert.deepEqual([read.end.canceled, read.end.message], [true, 'Port is not open'])
+    assert.deepEqual([clock.pending(), log], [0, []])
+  })
+
+  it('that is closed while the descriptor is asked does not sleep any more', async () => {
+    const port = await open()
+    pace.hint(clock.now(), { rest: 1000, latest: Infinity })
+    const read = reading(port)
+    await soon()
+    await port.close()
+    port.told[0](null)
+    await soon()
+    assert.deepEqual([read.end?.canceled, clock.pending(), log], [true, 0, ['readable']])
+  })
+
+  it('lists what the wrapped binding lists', () => {
+    const ports = [{ path: 'COM3' }]
+    assert.equal(pacedBinding({ list: () => ports }, pace).list(), ports)
+  })
+
+  it('where there is no descriptor a port that is closed while it sleeps is not read', async () => {
+    const port = await open({ poller: undefined })
+    pace.hint(clock.now() + 1000)
+    const read = reading(port)
+    await port.close()
+    await soon()
+    assert.deepEqual([read.end.canceled, clock.pending()], [true, 0])
   })
 
   it('uses the wrapped read and write where there is no descriptor', async () => {

@@ -25,8 +25,12 @@ class Socket extends EventEmitter {
     this.closed = true
     this.emit('close')
   }
-  pause() {}
-  resume() {}
+  pause() {
+    this.log.push('pause')
+  }
+  resume() {
+    this.log.push('resume')
+  }
   setKeepAlive(on, ms) {
     this.log.push(`keepAlive ${on} ${ms}`)
   }
@@ -36,9 +40,10 @@ describe('tcp transport: a socket that fails', () => {
   const { connect } = net
   /** @type {Socket} */
   let socket
+  let asked
   beforeEach(() => {
     socket = new Socket()
-    net.connect = /** @type {any} */ (() => socket)
+    net.connect = /** @type {any} */ (options => ((asked = options), socket))
   })
   afterEach(() => {
     net.connect = connect
@@ -54,7 +59,7 @@ describe('tcp transport: a socket that fails', () => {
     const say = name => error => told.push(`${name} ${error.code}: ${error.details.reason}`)
     transport.open({
       opened: () => told.push('opened'),
-      data: bytes => told.push(`${bytes}`),
+      data: bytes => void told.push(`${bytes}`),
       closed: say('closed'),
       failed: say('failed')
     })
@@ -68,6 +73,46 @@ describe('tcp transport: a socket that fails', () => {
 
   it('is claimed by host and port, whatever the case', () => {
     assert.equal(create().transport.id(), 'server:4001')
+  })
+
+  it('connects to host and port; nothing waits for more to be sent; a dead other side is asked for', () => {
+    create({ keepAlive: 7000 })
+    assert.deepEqual([asked, socket.log], [{ host: 'Server', port: 4001, noDelay: true }, ['keepAlive true 7000']])
+    socket = new Socket()
+    create({ keepAlive: 0 })
+    assert.deepEqual(socket.log, [])
+  })
+
+  for (const [code, reason] of [
+    ['ECONNREFUSED', 'nothing listens there'],
+    ['EHOSTUNREACH', 'the host cannot be reached'],
+    ['ENETUNREACH', 'the network cannot be reached'],
+    ['ENOTFOUND', 'the name of the host is not known'],
+    ['EAI_AGAIN', 'the name of the host cannot be resolved now'],
+    ['ECONNRESET', 'the other side broke it off'],
+    ['ETIMEDOUT', 'no answer']
+  ]) {
+    it(`${code}: ${reason}`, () => {
+      const { told } = create()
+      socket.emit('error', Object.assign(new Error(`connect ${code}`), { code }))
+      assert.deepEqual(told, [`failed CONNECT_FAILED: ${reason}`])
+    })
+  }
+
+  it('a connection that just closes is told', () => {
+    const { told } = connected()
+    socket.emit('close')
+    assert.deepEqual(told, ['opened', 'closed LINE_DOWN: the connection was closed'])
+  })
+
+  it('a server that sends more than any wire brings is held', async () => {
+    const { told, transport, clock } = connected()
+    socket.log = []
+    socket.emit('data', Buffer.alloc(1500, 'A'))
+    assert.deepEqual([socket.log, transport.waiting], [['pause'], true])
+    await clock.advance(2)
+    assert.deepEqual([socket.log, transport.waiting], [['pause', 'resume'], false])
+    assert.equal(told.slice(1).join(''), 'A'.repeat(1500))
   })
 
   it('a fault without a known code is told in its own words, once', () => {

@@ -150,7 +150,16 @@ describe('what is known of answers that were taken', () => {
   }
 
   it('a serial port has its speed, by whatever name', () => {
-    for (const id of ['/dev/ttyUSB0', '/dev/ttyS1', '/dev/ttyAMA0', 'COM3', '/dev/cu.usbserial-1']) {
+    const names = [
+      '/dev/ttyUSB0',
+      '/dev/ttyS1',
+      '/dev/ttysx',
+      '/dev/ttyAMA0',
+      'COM3',
+      '/dev/cu.usbserial-1',
+      '/x/dev/pts/3'
+    ]
+    for (const id of names) {
       const counts = [0, 1, 2, 3].map(count => after(count, () => created('serial', id)))
       assert.deepEqual(
         counts,
@@ -169,7 +178,11 @@ describe('what is known of answers that were taken', () => {
     for (const [transport, id] of [
       ['tcp', 'host:4001'],
       ['serial', '/dev/pts/3'],
-      ['serial', '/dev/ttyACM0']
+      ['serial', '/dev/ttys003'],
+      ['serial', '/dev/ttyACM0'],
+      ['serial', '/dev/ttyGS0'],
+      ['serial', '/dev/cu.usbmodem14101'],
+      ['serial', '/dev/tty.usbmodem14101']
     ]) {
       const counts = [3, 4, 19, 20].map(count => after(count, () => created(transport, id)))
       assert.deepEqual(

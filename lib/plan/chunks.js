@@ -1,5 +1,5 @@
 'use strict'
-const { wordsOf } = require('./model')
+const { wordsOf } = require('./mixed')
 
 /**
  * Values that overlap, as one: what a plan of many values moves about. Pure.
@@ -14,18 +14,35 @@ const { wordsOf } = require('./model')
  * @property {{ count: number, answer: number } | null} share what it takes in a mixed request
  */
 
-/** Where a value stands: bits of words that are the same memory stand among the words. */
-const placed = (group, model) => {
-  const span = group.kind === 'word' ? group : wordsOf(group)
-  const among = group.kind === 'word' || model.isJoint(span)
-  const { start, end } = among ? span : group
-  return { space: among ? 'word' : 'bit', start, end, group }
+/**
+ * Where values stand, in order of address: bits of words that are the same memory stand among the words.
+ * @param {Group[]} groups
+ * @param {import('./model').Model} model
+ */
+const placesOf = (groups, model) => {
+  /** @type {Record<'word'|'bit', { start: number, end: number, group: Group }[]>} */
+  const places = { word: [], bit: [] }
+  for (const group of groups) {
+    const span = group.kind === 'word' ? group : wordsOf(group)
+    const among = group.kind === 'word' || model.isJoint(span)
+    const { start, end } = among ? span : group
+    places[among ? 'word' : 'bit'].push({ start, end, group })
+  }
+  for (const own of [places.word, places.bit]) own.sort((a, b) => a.start - b.start || a.end - b.end)
+  return places
 }
 
-const bitsOf = groups =>
-  groups.every(({ kind }) => kind === 'bit')
-    ? { first: Math.min(...groups.map(({ start }) => start)), last: Math.max(...groups.map(({ end }) => end)) }
-    : null
+/** First and last bit of values, where none is a word. */
+const bitsOf = groups => {
+  let first = Infinity
+  let last = -Infinity
+  for (const { kind, start, end } of groups) {
+    if (kind === 'word') return null
+    first = Math.min(first, start)
+    last = Math.max(last, end)
+  }
+  return { first, last }
+}
 
 const WORK = 5e5 // blocks that a search may have to look at
 
@@ -40,28 +57,41 @@ const grainOf = (places, most) => {
   return Math.min(most, Math.ceil(Math.sqrt((places.length * reach) / WORK)))
 }
 
+const chunksIn = (space, places, model) => {
+  if (places.length === 0) return []
+  const longest = model.most[space]
+  const grain = grainOf(places, longest)
+  /** @type {Chunk[]} */
+  const chunks = []
+  /** @type {any} */
+  let last = null
+  /** So long may a chunk become by a value that begins there: 0 at the end of an area, which no block crosses. */
+  const mostAt = start => {
+    // a run of values that overlap may be longer than a request: then some of it is read twice
+    if (start < last.end) return longest
+    return model.borderAfter(space, start - 1) === start ? 0 : grain
+  }
+  for (const { start, end, group } of places) {
+    if (last && start <= last.end && Math.max(end, last.end) - last.start <= mostAt(start)) {
+      last.end = Math.max(last.end, end)
+      last.groups.push(group)
+    } else chunks.push((last = { space, start, end, groups: [group], bits: null, share: null }))
+  }
+  for (const chunk of chunks) {
+    chunk.bits = bitsOf(chunk.groups)
+    chunk.share = model.mixedShare(chunk)
+  }
+  return chunks
+}
+
 /**
  * @param {Group[]} groups
  * @param {import('./model').Model} model
- * @param {'bit'|'word'} space
- * @returns {Chunk[]} in order of address
+ * @returns {Chunk[]} in order of address, those of words first
  */
-const chunksOf = (groups, model, space) => {
-  const places = groups.map(group => placed(group, model)).filter(place => place.space === space)
-  if (places.length === 0) return []
-  places.sort((a, b) => a.start - b.start || a.end - b.end)
-  const grain = grainOf(places, model.most[space])
-  const merged = []
-  for (const { start, end, group } of places) {
-    const last = merged.at(-1)
-    // a run of values that overlap may be longer than a request: then some of it is read twice
-    const most = last && start < last.end ? model.most[space] : grain
-    if (last && start <= last.end && Math.max(end, last.end) - last.start <= most) {
-      last.end = Math.max(last.end, end)
-      last.groups.push(group)
-    } else merged.push({ space, start, end, groups: [group] })
-  }
-  return merged.map(chunk => ({ ...chunk, bits: bitsOf(chunk.groups), share: model.mixedShare(chunk.groups) }))
+const chunksOf = (groups, model) => {
+  const { word, bit } = placesOf(groups, model)
+  return [...chunksIn('word', word, model), ...chunksIn('bit', bit, model)]
 }
 
 module.exports = { chunksOf }

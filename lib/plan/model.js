@@ -1,4 +1,5 @@
 'use strict'
+const { addressesOf, askedOf, fits, shareOf, sizeOf, wordsOf } = require('./mixed')
 
 /**
  * What one read request can hold and what it costs: the one place that all planners ask. Pure.
@@ -16,7 +17,6 @@
  */
 
 const FRAME_COST = 60 // two frames' heads and CRC, 10 ms of gap and some of turnaround at 38400 bit/s
-const LAST_MIXED = 0x3fff // two of sixteen bits of a mixed address say what it is
 
 const sortedSpans = spans => [...spans].sort((a, b) => a.start - b.start)
 
@@ -40,9 +40,6 @@ const rulesOf = (kind, { bounds = [], holes = [] }) => ({
   holes: sortedSpans(holes.filter(hole => hole.kind === kind))
 })
 
-/** The words of a bit, where the station has them as one memory. */
-const wordsOf = ({ start, end }) => ({ start: start >> 4, end: ((end - 1) >> 4) + 1 })
-
 /** Touching intervals as one. */
 const joined = intervals => {
   const all = []
@@ -54,40 +51,19 @@ const joined = intervals => {
   return all
 }
 
-const addressesIn = ({ start, end }) => Array.from({ length: end - start }, (_, at) => start + at)
+/** Where a value stands in a block of bits or words. */
+const spanIn = (kind, group) => (group.kind === kind ? group : wordsOf(group))
 
-/** The words that a mixed request asks for, also for their bits: from two bits of a word on the word itself is shorter. */
-const mixedWords = (groups, isJoint) => {
-  const words = new Set()
-  const single = new Map()
+/** From the first to the last address of values in a block. */
+const extentOf = (kind, groups) => {
+  let start = Infinity
+  let end = -Infinity
   for (const group of groups) {
-    const span = group.kind === 'word' ? group : wordsOf(group)
-    const whole = group.kind === 'word' || (group.end - group.start > 1 && isJoint(span))
-    if (whole) for (const word of addressesIn(span)) words.add(word)
-    else if (isJoint(span)) single.set(span.start, [...(single.get(span.start) ?? []), group])
+    const span = spanIn(kind, group)
+    start = Math.min(start, span.start)
+    end = Math.max(end, span.end)
   }
-  for (const [word, own] of single) if (own.length > 1 || own[0].start > LAST_MIXED) words.add(word)
-  return words
-}
-
-const none = () => false
-
-/**
- * Addresses of a mixed request, each once. A value stands whole in bits or whole in words.
- * @returns {{ addresses: { kind: 'bit'|'word', address: number }[], through: (group: Group) => boolean }}
- */
-const mixedAddresses = (groups, isJoint) => {
-  const [{ kind: only, start: first, end: last }] = groups
-  if (groups.length === 1 && last - first === 1 && first <= LAST_MIXED)
-    return { addresses: [{ kind: only, address: first }], through: none }
-  const words = mixedWords(groups, isJoint)
-  const through = group => {
-    const span = wordsOf(group)
-    return group.kind === 'bit' && isJoint(span) && addressesIn(span).every(word => words.has(word))
-  }
-  const bits = new Set(groups.filter(group => group.kind === 'bit' && !through(group)).flatMap(addressesIn))
-  const list = (kind, addresses) => [...addresses].sort((a, b) => a - b).map(address => ({ kind, address }))
-  return { addresses: [...list('bit', bits), ...list('word', words)], through }
+  return { kind, start, end }
 }
 
 /** INFO of a block's query: address and count. */
@@ -116,7 +92,10 @@ class Model {
   }
 
   /** Whether these words and their bits are one memory. @param {{ start: number, end: number }} span */
-  isJoint = ({ start, end }) => this.#joint.some(([from, to]) => from <= start && end <= to)
+  isJoint = ({ start, end }) => {
+    for (const [from, to] of this.#joint) if (from <= start && end <= to) return true
+    return false
+  }
 
   #sizeOf(kind, count) {
     const { unit = 1, bitBytes = 1, scale = 1 } = this.#limits
@@ -132,7 +111,8 @@ class Model {
   mayBridge(kind, from, to) {
     if (from >= to) return true
     if (this.#limits.bridge === false) return false
-    return !this.#rules[kind].holes.some(({ start, end }) => start < to && from < end)
+    for (const { start, end } of this.#rules[kind].holes) if (start < to && from < end) return false
+    return true
   }
 
   /** The first border after an address: areas need not be one memory. @param {'bit'|'word'} kind @param {number} start */
@@ -149,51 +129,62 @@ class Model {
     return false
   }
 
-  #priced(frame, query, answer) {
+  /** What a frame costs at first and repeated. @param {number} query bytes of INFO @param {number} answer the same */
+  #prices(query, answer) {
     const cost = this.frameCost + query + answer
-    return { ...frame, cost, again: Math.min(cost, this.repeatCost + answer) }
+    return { cost, again: Math.min(cost, this.repeatCost + answer) }
   }
 
-  #block(kind, spans, groups) {
-    const sorted = sortedSpans(spans)
-    const { start } = sorted[0]
-    let { end } = sorted[0]
-    for (const span of sorted) {
-      if (!this.mayBridge(kind, end, span.start)) return null
+  /** What a block costs at first and repeated. @param {{ kind: 'bit'|'word', start: number, end: number }} block */
+  pricesOfBlock({ kind, start, end }) {
+    return this.#prices(QUERY, this.#sizeOf(kind, end - start))
+  }
+
+  /** Whether all that lies between these values may be read with them. @param {{ start: number, end: number }[]} spans in order */
+  #bridges(kind, spans) {
+    let { end } = spans[0]
+    for (const span of spans) {
+      if (!this.mayBridge(kind, end, span.start)) return false
       end = Math.max(end, span.end)
     }
-    if (end - start > this.most[kind] || this.#crosses(kind, { start, end }, spans)) return null
+    return true
+  }
+
+  #block(kind, groups) {
+    const span = extentOf(kind, groups)
+    if (span.end - span.start > this.most[kind]) return null
+    const spans = sortedSpans(groups.map(group => spanIn(kind, group)))
+    if (!this.#bridges(kind, spans) || this.#crosses(kind, span, spans)) return null
     const through = group => group.kind !== kind
-    const frame = { form: 'block', span: { kind, start, end }, groups, through }
-    return this.#priced(frame, QUERY, this.#sizeOf(kind, end - start))
+    return { form: 'block', span, groups, through, ...this.pricesOfBlock(span) }
   }
 
   #asWords(groups) {
-    const spans = groups.map(group => (group.kind === 'word' ? group : wordsOf(group)))
-    const possible = groups.every(({ kind }, at) => kind === 'word' || this.isJoint(spans[at]))
-    return possible ? this.#block('word', spans, groups) : null
+    const possible = groups.every(group => group.kind === 'word' || this.isJoint(wordsOf(group)))
+    return possible ? this.#block('word', groups) : null
   }
 
   #asBits(groups) {
-    return groups.every(({ kind }) => kind === 'bit') ? this.#block('bit', groups, groups) : null
+    return groups.every(({ kind }) => kind === 'bit') ? this.#block('bit', groups) : null
   }
 
   #asMixed(groups) {
     if (this.mostMixed < 2) return null
-    const { addresses, through } = mixedAddresses(groups, this.isJoint)
+    const asked = askedOf(groups, this.isJoint)
+    const { count, answer } = sizeOf(asked)
     // the plain functions are the better proven ones: one address never goes alone
-    if (addresses.length < 2 || !this.#fits(addresses)) return null
-    return this.#priced({ form: 'mixed', addresses, groups, through }, 2 * addresses.length, answerOf(addresses))
+    if (count < 2 || !fits(asked, this.mostMixed)) return null
+    // a number of several bits stands in words wherever these are the same memory
+    const through = group =>
+      group.kind === 'bit' &&
+      (group.end - group.start > 1 || asked.words.has(group.start >> 4)) &&
+      this.isJoint(wordsOf(group))
+    return { form: 'mixed', addresses: addressesOf(asked), groups, through, ...this.#prices(2 * count, answer) }
   }
 
-  #fits(addresses) {
-    return addresses.length <= this.mostMixed && addresses.every(({ address }) => address <= LAST_MIXED)
-  }
-
-  /** What values take in a mixed request: addresses and bytes of the answer; null: it cannot hold them. @param {Group[]} groups */
-  mixedShare(groups) {
-    const { addresses } = mixedAddresses(groups, this.isJoint)
-    return this.#fits(addresses) ? { count: addresses.length, answer: answerOf(addresses) } : null
+  /** What values take in a mixed request: addresses and bytes of the answer; null: it cannot hold them. @param {any} chunk */
+  mixedShare(chunk) {
+    return shareOf(chunk, { most: this.mostMixed, isJoint: this.isJoint })
   }
 
   /** All the ways to read these values with one request. @param {Group[]} groups @returns {Frame[]} */
@@ -202,15 +193,23 @@ class Model {
   }
 }
 
-/** Bytes of INFO of a mixed answer. */
-const answerOf = addresses => addresses.reduce((sum, { kind }) => sum + (kind === 'word' ? 2 : 1), 0)
-
-/** What such frames cost each cycle: the last one of a cycle is the first of the next, where the station repeats it. @param {Frame[]} frames */
+/**
+ * What such frames cost each cycle: the last one of a cycle is the first of the next, where the station repeats it.
+ * @param {{ cost: number, again: number }[]} frames
+ */
 const cycleCost = frames => {
-  const total = frames.reduce((sum, { cost }) => sum + cost, 0)
   if (frames.length === 1) return frames[0].again
-  const saved = frames.map(({ cost, again }) => cost - again).sort((a, b) => b - a)
-  return total - ((saved[0] ?? 0) + (saved[1] ?? 0)) / 2
+  let total = 0
+  // the two that gain most by repetition stand at the ends
+  let most = 0
+  let second = 0
+  for (const { cost, again } of frames) {
+    const saved = cost - again
+    total += cost
+    if (saved > most) [most, second] = [saved, most]
+    else if (saved > second) second = saved
+  }
+  return total - (most + second) / 2
 }
 
-module.exports = { LAST_MIXED, Model, cycleCost, wordsOf }
+module.exports = { Model, cycleCost }

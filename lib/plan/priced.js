@@ -1,6 +1,7 @@
 'use strict'
 const { chunksOf } = require('./chunks')
 const { cycleCost } = require('./model')
+const { pack, roomOf } = require('./pack')
 const { chunkTable } = require('./table')
 
 /**
@@ -9,7 +10,9 @@ const { chunkTable } = require('./table')
  *
  * @typedef {import('./model').Frame} Frame
  * @typedef {import('./blocks').Group} Group
+ * @typedef {import('./pack').Bin} Bin
  * @typedef {{ from: number, to: number, cost: number }} Block chunks by their places in the table
+ * @typedef {{ mixed: number[], blocks: Block[] }} Choice
  */
 
 // below zero: where a request is repeated by its short form, addresses in it cost nothing on the way out
@@ -19,10 +22,14 @@ const WORK = 2e6 // steps of all searches together: a bound of the time
 
 const MIXED = -1
 
-/** Where the last request of the cheapest choice up to each chunk begins; MIXED: the chunk goes into a mixed one. */
-const choose = ({ count, shares, answers, costs, first }, price) => {
-  const best = new Float64Array(count + 1).fill(Infinity)
-  const from = new Int32Array(count + 1)
+/**
+ * Where the last request of the cheapest choice up to each chunk begins; MIXED: the chunk goes into a mixed one.
+ * @param {ReturnType<typeof chunkTable>} table
+ * @param {number} price
+ * @param {{ best: Float64Array, from: Int32Array }} notes for each chunk, and one more
+ */
+const choose = ({ count, shares, answers, costs, first }, price, { best, from }) => {
+  best.fill(Infinity)
   best[0] = 0
   for (let at = 0; at < count; at++) {
     const here = best[at]
@@ -44,7 +51,7 @@ const choose = ({ count, shares, answers, costs, first }, price) => {
   return from
 }
 
-/** @returns {{ mixed: number[], blocks: Block[] }} */
+/** @returns {Choice} */
 const trace = ({ count, costs, first }, from) => {
   const mixed = []
   const blocks = []
@@ -57,83 +64,66 @@ const trace = ({ count, costs, first }, from) => {
   return { mixed, blocks }
 }
 
-const roomOf = (mixed, { shares }) => mixed.reduce((total, at) => total + shares[at], 0)
-
-/** First fit, largest first: values of one and two words fill requests without a gap. @returns {number[][]} */
-const pack = (mixed, { shares }, most) => {
-  const plain = mixed.every(at => shares[at] === 1)
-  /** @type {{ used: number, chunks: number[] }[]} */
-  const bins = []
-  let open = 0
-  for (const at of plain ? mixed : [...mixed].sort((a, b) => shares[b] - shares[a])) {
-    let bin
-    for (let index = open; index < bins.length && !bin; index++) {
-      if (bins[index].used + shares[at] <= most) bin = bins[index]
-    }
-    if (!bin) bins.push((bin = { used: 0, chunks: [] }))
-    bin.used += shares[at]
-    bin.chunks.push(at)
-    while (open < bins.length && bins[open].used === most) open++
+/** What a block would gain in mixed requests, and how many addresses it has there. */
+const gainOf = (block, { shares, answers }) => {
+  let count = 0
+  let gain = block.cost
+  for (let at = block.from; at < block.to && gain > 0; at++) {
+    count += shares[at]
+    gain = shares[at] === 0 ? 0 : gain - answers[at] - 2 * shares[at]
   }
-  return bins.map(({ chunks }) => chunks)
+  return { block, count, gain }
 }
 
 const range = (from, to) => Array.from({ length: to - from }, (_, at) => from + at)
 
-/** What room is left in the mixed requests takes the blocks that gain most. */
+/** What room is left in the mixed requests takes the blocks that gain most. @returns {Choice & { bins: Bin[] }} */
 const fill = ({ mixed, blocks }, table, most) => {
-  let room = pack(mixed, table, most).length * most - roomOf(mixed, table)
-  if (room === 0) return { mixed, blocks }
-  const { shares, answers } = table
-  const gaining = []
-  for (const block of blocks) {
-    let count = 0
-    let gain = block.cost
-    for (let at = block.from; at < block.to && gain > 0; at++) {
-      count += shares[at]
-      gain = shares[at] === 0 ? 0 : gain - answers[at] - 2 * shares[at]
-    }
-    if (gain > 0 && count <= room) gaining.push({ block, gain, count })
-  }
+  const bins = pack(mixed, table, most)
+  let room = bins.length * most - roomOf(mixed, table)
+  if (room === 0) return { mixed, blocks, bins }
+  const gaining = blocks.map(block => gainOf(block, table)).filter(({ gain, count }) => gain > 0 && count <= room)
   const moved = new Set()
   for (const { block, count } of gaining.sort((a, b) => b.gain / b.count - a.gain / a.count)) {
     if (count > room) continue
     room -= count
     moved.add(block)
   }
-  const more = [...moved].flatMap(({ from, to }) => range(from, to))
-  return { mixed: [...mixed, ...more], blocks: blocks.filter(block => !moved.has(block)) }
+  if (moved.size === 0) return { mixed, blocks, bins }
+  const all = [...mixed, ...[...moved].flatMap(({ from, to }) => range(from, to))]
+  return { mixed: all, blocks: blocks.filter(block => !moved.has(block)), bins: pack(all, table, most) }
 }
 
-/** Sets of chunks with what they cost as requests, without making these. */
-const priced = (chosen, table, model) => {
-  const { mixed, blocks } = fill(chosen, table, model.mostMixed)
-  const { frameCost, repeatCost, queryOfBlock } = model
-  const sets = blocks.map(({ from, to, cost }) => {
-    const again = Math.min(cost, cost - frameCost - queryOfBlock + repeatCost)
-    return { chunks: range(from, to), cost, again }
-  })
-  for (const chunks of pack(mixed, table, model.mostMixed)) {
-    const answer = chunks.reduce((total, at) => total + table.answers[at], 0)
-    const cost = frameCost + 2 * roomOf(chunks, table) + answer
-    sets.push({ chunks, cost, again: Math.min(cost, repeatCost + answer) })
+/** What blocks and mixed requests cost, without making them. */
+const pricesOf = ({ blocks, bins }, { frameCost, repeatCost, queryOfBlock }) => {
+  const prices = blocks.map(({ cost }) => ({
+    cost,
+    again: Math.min(cost, cost - frameCost - queryOfBlock + repeatCost)
+  }))
+  for (const { used, answer } of bins) {
+    const cost = frameCost + 2 * used + answer
+    prices.push({ cost, again: Math.min(cost, repeatCost + answer) })
   }
-  return sets
+  return prices
 }
 
 /** Tries prices; remembers the cheapest plan. */
 const createSearch = (table, model) => {
-  /** @type {{ sets: { chunks: number[] }[], cost: number, room: number }} */
-  const best = { sets: [], cost: Infinity, room: 0 }
+  /** @type {{ blocks: Block[], bins: Bin[], cost: number, room: number }} */
+  const best = { blocks: [], bins: [], cost: Infinity, room: 0 }
+  const notes = { best: new Float64Array(table.count + 1), from: new Int32Array(table.count + 1) }
   return {
     best,
     /** @returns {number} addresses that go into mixed requests at this price */
     attempt: price => {
-      const chosen = trace(table, choose(table, price))
+      const from = choose(table, price, notes)
+      // a value that no block can hold has no way at an infinite price
+      if (notes.best[table.count] === Infinity) return 0
+      const chosen = trace(table, from)
       const room = roomOf(chosen.mixed, table)
-      const sets = priced(chosen, table, model)
-      const cost = cycleCost(sets)
-      if (cost < best.cost) Object.assign(best, { sets, cost, room })
+      const { blocks, bins } = fill(chosen, table, model.mostMixed)
+      const cost = cycleCost(pricesOf({ blocks, bins }, model))
+      if (cost < best.cost) Object.assign(best, { blocks, bins, cost, room })
       return room
     }
   }
@@ -162,12 +152,11 @@ const explore = (search, { steps, mostMixed }) => {
 
 const cheapest = (frames, key) => frames.reduce((best, frame) => (frame[key] < best[key] ? frame : best))
 
-/** Requests of sets of chunks; a set that no request can hold after all is read chunk by chunk. @returns {Frame[]} */
-const framesOf = (sets, model, key) =>
-  sets.flatMap(groups => {
-    const frames = model.frames(groups.flat())
-    if (frames.length > 0) return [cheapest(frames, key)]
-    return groups.map(own => cheapest(model.frames(own), key))
+/** All requests that can hold a set of chunks, for each set; one that none can hold after all is read chunk by chunk. @returns {Frame[][]} */
+const formsOf = (sets, model) =>
+  sets.flatMap(chunks => {
+    const forms = model.frames(chunks.flatMap(({ groups }) => groups))
+    return forms.length > 0 ? [forms] : chunks.map(({ groups }) => model.frames(groups))
   })
 
 /**
@@ -176,12 +165,17 @@ const framesOf = (sets, model, key) =>
  * @returns {Frame[]}
  */
 const pricedPlan = (groups, model) => {
-  const chunks = [...chunksOf(groups, model, 'word'), ...chunksOf(groups, model, 'bit')]
+  const chunks = chunksOf(groups, model)
   const table = chunkTable(chunks, model)
   const search = createSearch(table, model)
   explore(search, { steps: table.costs.length + table.count, mostMixed: model.mostMixed })
-  const sets = search.best.sets.map(set => set.chunks.map(at => chunks[at].groups))
-  const plans = (model.repeats ? ['cost', 'again'] : ['cost']).map(key => framesOf(sets, model, key))
+  const { blocks, bins } = search.best
+  const sets = [
+    ...blocks.map(({ from, to }) => chunks.slice(from, to)),
+    ...bins.map(bin => bin.chunks.map(at => chunks[at]))
+  ]
+  const forms = formsOf(sets, model)
+  const plans = (model.repeats ? ['cost', 'again'] : ['cost']).map(key => forms.map(each => cheapest(each, key)))
   return plans.reduce((best, plan) => (cycleCost(plan) < cycleCost(best) ? plan : best))
 }
 

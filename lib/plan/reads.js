@@ -3,7 +3,8 @@ const { PlcError } = require('../error')
 const { blocksOf, groupsOf } = require('./blocks')
 const { MOST_EXACT, exactPlan } = require('./exact')
 const { merged } = require('./merge')
-const { LAST_MIXED, Model, cycleCost } = require('./model')
+const { LAST_MIXED } = require('./mixed')
+const { Model, cycleCost } = require('./model')
 const { pricedPlan } = require('./priced')
 
 /**
@@ -38,13 +39,18 @@ const { pricedPlan } = require('./priced')
 
 const MOST_GROUPS_MERGED = 300 // pairs of requests are compared only while that is quick
 
-/** Where the values of a group stand in an answer whose addresses have these places. */
-const servedBy = ({ groups, through }, placeOf) =>
-  groups.flatMap(group => {
-    const { kind, start, end } = group
-    const place = through(group) ? { at: placeOf('word', start >> 4), bit: start & 15 } : { at: placeOf(kind, start) }
-    return group.points.map(point => ({ point, ...place, count: end - start }))
-  })
+/** Where the values of a group stand in an answer whose addresses have these places. @returns {Served[]} */
+const servedBy = ({ groups, through }, placeOf) => {
+  const served = []
+  for (const group of groups) {
+    const { kind, start, end, points } = group
+    const count = end - start
+    const isThrough = through(group)
+    const at = isThrough ? placeOf('word', start >> 4) : placeOf(kind, start)
+    for (const point of points) served.push(isThrough ? { point, at, bit: start & 15, count } : { point, at, count })
+  }
+  return served
+}
 
 const shapeOf = ({ form, span, addresses }) => {
   if (form === 'mixed') return { ask: 'readMixed', addresses }
@@ -54,8 +60,9 @@ const shapeOf = ({ form, span, addresses }) => {
 
 const placesOf = ({ form, span, addresses }) => {
   if (form === 'block') return (_kind, address) => address - span.start
-  const places = new Map(addresses.map(({ kind, address }, at) => [kind + address, at]))
-  return (kind, address) => places.get(kind + address)
+  const places = { bit: new Map(), word: new Map() }
+  addresses.forEach(({ kind, address }, at) => places[kind].set(address, at))
+  return (kind, address) => places[kind].get(address)
 }
 
 /** @returns {ReadRequest} */
@@ -63,13 +70,6 @@ const requestOf = frame => {
   const { cost, again } = frame
   return /** @type {any} */ ({ ...shapeOf(frame), points: servedBy(frame, placesOf(frame)), cost, again })
 }
-
-const groupsOfKind = (points, kind) =>
-  groupsOf(
-    points
-      .map(({ kind: each, address, count = 1 }, point) => ({ kind: each, address, count, point }))
-      .filter(point => point.kind === kind)
-  )
 
 const checkGroups = (groups, model) => {
   for (const group of groups) {
@@ -80,17 +80,16 @@ const checkGroups = (groups, model) => {
   }
 }
 
-/** Neighbours in blocks, no holes: what any other plan has to beat. */
-const plainPlan = (groups, model, bounds = []) =>
+/** Neighbours in blocks, no holes: what any other plan has to beat. No block of a kind of which a value is too long. */
+const plainBlocks = (groups, model, bounds = []) =>
   /** @type {const} */ (['word', 'bit']).flatMap(kind => {
     const own = groups.filter(group => group.kind === kind)
     const most = model.most[kind]
     if (own.some(({ start, end }) => end - start > most)) return []
-    const blocks = blocksOf(own, { most, bounds: kind === 'bit' ? bounds.map(bound => bound * 16) : bounds })
-    return blocks.map(block => model.frames(block.groups)[0])
+    return blocksOf(own, { most, bounds: kind === 'bit' ? bounds.map(bound => bound * 16) : bounds })
   })
 
-const servesAll = (frames, groups) => frames.reduce((sum, frame) => sum + frame.groups.length, 0) === groups.length
+const servesAll = (parts, groups) => parts.reduce((sum, part) => sum + part.groups.length, 0) === groups.length
 
 const RANK = { word: 0, bit: 1, mixed: 2 }
 const rankOf = ({ form, span }) => RANK[form === 'mixed' ? form : span.kind]
@@ -106,12 +105,13 @@ const ordered = frames => {
 
 const bestPlan = (groups, model, limits) => {
   if (groups.length <= MOST_EXACT) return exactPlan(groups, model)
-  const found = pricedPlan(groups, model)
-  const plain = plainPlan(groups, model, limits.bounds)
+  const priced = pricedPlan(groups, model)
+  const found = groups.length <= MOST_GROUPS_MERGED ? merged(priced, model) : priced
+  const plain = plainBlocks(groups, model, limits.bounds)
   // of equal plans the plain one
-  const plans = servesAll(plain, groups) ? [plain] : []
-  plans.push(groups.length <= MOST_GROUPS_MERGED ? merged(found, model) : found)
-  return plans.reduce((best, plan) => (cycleCost(plan) < cycleCost(best) ? plan : best))
+  const isPlain =
+    servesAll(plain, groups) && cycleCost(plain.map(block => model.pricesOfBlock(block))) <= cycleCost(found)
+  return isPlain ? plain.map(block => model.frames(block.groups)[0]) : found
 }
 
 /**
@@ -125,7 +125,7 @@ const bestPlan = (groups, model, limits) => {
  * @throws {PlcError} FRAME_TOO_LONG one value does not fit into one request
  */
 const planReads = (points, limits) => {
-  const groups = [...groupsOfKind(points, 'word'), ...groupsOfKind(points, 'bit')]
+  const groups = [...groupsOf(points, 'word'), ...groupsOf(points, 'bit')]
   if (groups.length === 0) return []
   const model = new Model(limits)
   checkGroups(groups, model)

@@ -47,8 +47,9 @@ const touch = (kind, place, { lastOfBit, lastOfWord, round }) => {
 const blocksFor = (points, kind, limits) => {
   const { writeBits, writeWords, info, bounds = [] } = limits
   const most = kind === 'bit' ? Math.min(writeBits, info - 2) : Math.min(writeWords, (info - 2) >> 1)
-  const chosen = points.filter(point => point.kind === kind).map(point => ({ ...point, count: point.values.length }))
-  return blocksOf(groupsOf(chosen), { most, bounds: kind === 'bit' ? bounds.map(bound => bound * 16) : bounds })
+  const places = points.map(({ kind: own, address, values }) => ({ kind: own, address, count: values.length }))
+  const groups = groupsOf(places, kind, at => points[at].point)
+  return blocksOf(groups, { most, bounds: kind === 'bit' ? bounds.map(bound => bound * 16) : bounds })
 }
 
 const items = ({ start, end }) => end - start

@@ -85,6 +85,15 @@ describe('plan of reads', () => {
     ])
   })
 
+  it('does not cross it either where there are so many values that neighbours are planned in pairs', () => {
+    const points = words(0, 4200)
+    const own = { bounds: [2001], readMixed: 0 }
+    const requests = plan(points, own)
+    checkServed(points, requests)
+    checkLimits(requests, own, own.bounds)
+    assert.equal(requests.length, Math.ceil(2001 / 128) + Math.ceil(2199 / 128))
+  })
+
   it('does not tear a value of several words', () => {
     const points = [...words(0, 127), word(127, 2)]
     assert.deepEqual(shape(plan(points)), ['readWords 0 127', 'readWords 127 2'])

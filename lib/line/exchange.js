@@ -1,6 +1,7 @@
 'use strict'
 
 const { PlcError } = require('../error')
+const { Awaited } = require('./awaited')
 const { EMPTY, Receiver } = require('./receiver')
 const { Repeats } = require('./repeats')
 const { Silence } = require('./silence')
@@ -8,9 +9,6 @@ const { Silence } = require('./silence')
 /** A timer that fires this late (ms) tells of a busy process, not of a silent station: then the bytes get time to come in. */
 const LAG = 10
 const MOST_GRACE = 250
-
-/** So much later (ms) an error may be seen than it has come; always long before its time is over. */
-const MOST_LATER = 25
 
 const TOLERANCE = 0.001
 
@@ -26,6 +24,7 @@ class Exchange {
   #settings
   #rx = new Receiver()
   #repeats
+  #awaited
   #silence
   /** @type {any} */
   #job = null
@@ -44,12 +43,14 @@ class Exchange {
     this.#times = times
     this.#echo = echo
     this.#link = link
+    this.#awaited = new Awaited(times)
     this.#repeats = new Repeats({ character: times.character, transport: settings.transport })
     this.#silence = new Silence({ clock, quietSince: () => this.quietSince })
   }
 
   /** The port was opened. @param {unknown} id what its transport claims */
   opened(id) {
+    this.#awaited.forget()
     this.#repeats.opened(id)
   }
 
@@ -114,22 +115,15 @@ class Exchange {
 
   /** Tells the transport how long nobody needs to read: after sending, and after a part of the answer. */
   #hint(job, fresh) {
-    const count = this.#awaited(job) - this.#rx.bytes.length
+    const { step, need, ours } = job
+    const count = (ours ? need : this.#awaited.bytes(step, need, this.#echo.expected)) - this.#rx.bytes.length
     if (count <= 0) return
     const { character } = this.#times
     if (fresh) return this.#link.hint(count, this.#lastByteAt + count * character)
     // our own echo comes while we send
     const echo = this.#rx.bytes.length === 0 ? this.#echo.expected : 0
-    const latest = this.#sendEnd + job.step.timeout
+    const latest = this.#sendEnd + step.timeout
     this.#link.hint(count, this.#sendEnd + (count - echo) * character, { rest: (count - 1) * character, latest })
-  }
-
-  /** What is worth reading: not the shortest error first, where the whole answer is hardly longer. */
-  #awaited({ step, need, ours }) {
-    if (ours || !step.usual) return need
-    const usual = step.usual + this.#echo.expected
-    const later = (usual - need) * this.#times.character
-    return later > 0 && later <= Math.min(MOST_LATER, this.#times.slack / 2) ? usual : need
   }
 
   /** Bytes arrived. @param {Buffer} bytes */
@@ -182,6 +176,7 @@ class Exchange {
           continue
         }
         this.#repeats.answered(frame, this.#query)
+        this.#awaited.answered(frame, step)
         this.#echo.answered(frame)
         this.#settle(null, frame)
         return verdict
@@ -300,7 +295,10 @@ class Exchange {
   #settle(error, bytes = EMPTY) {
     const job = this.#job
     this.#idle()
-    if (error) this.#repeats.failed()
+    if (error) {
+      this.#repeats.failed()
+      this.#awaited.forget()
+    }
     const rest = this.#rx.takeAll()
     const ms = this.#clock.now() - this.#sendEnd
     const wait = Math.max(0, ms - bytes.length * this.#times.character)

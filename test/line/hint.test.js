@@ -11,7 +11,7 @@ const SENT = 4 // bytes of a query
 const SHORTEST = 5
 
 /** An exchange over a transport of the test; `hints`: for how many bytes nobody needs to read until when. */
-const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off') }) => {
+const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off'), timeout = 200 }) => {
   const clock = createVirtualClock()
   const bench = {
     clock,
@@ -34,14 +34,23 @@ const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off') }) => {
   const times = { character: CHARACTER, gap: 0, slack }
   const settings = { jamTime: 1000, writeTimeout: 1000 }
   const exchange = new Exchange({ clock, settings, times, echo: new Echo(echo, clock.now), link })
-  const step = { send: toy.query(5), match: toy.answerTo(5), timeout: 200, usual }
   const done = (error, answer) => bench.ended.push(error?.code ?? answer.length)
-  exchange.start(step, { gap: 0, station: 5, sent() {}, done })
+  const ask = more => {
+    const step = { send: toy.query(5), match: toy.answerTo(5), timeout, usual, ...more }
+    exchange.start(step, { gap: 0, station: 5, sent() {}, done })
+  }
+  ask({})
   const come = async (ms, bytes) => {
     await clock.advance(ms - clock.now())
     exchange.data(bytes)
   }
-  return Object.assign(bench, { come, last: () => bench.hints.at(-1) })
+  /** For how many bytes the next one waits. */
+  const next = (more = {}) => {
+    ask(more)
+    return bench.hints.at(-1)?.[0]
+  }
+  const opened = () => exchange.opened('again')
+  return Object.assign(bench, { come, next, opened, last: () => bench.hints.at(-1) })
 }
 
 describe('what the transport is told to wait for', () => {
@@ -84,6 +93,43 @@ describe('what the transport is told to wait for', () => {
     ])) {
       assert.deepEqual(begin(options).last(), [count, SENT + count], JSON.stringify(options))
     }
+  })
+
+  describe('after an answer as long as usual', () => {
+    const good = async (more = {}) => {
+      const bench = begin({ usual: 25, timeout: 1000, ...more })
+      await bench.come(30, answer)
+      assert.deepEqual(bench.ended, [25])
+      return bench
+    }
+
+    it('an error may be seen 60 ms later, or a quarter of the timeout', async () => {
+      assert.equal((await good()).next({ usual: SHORTEST + 60 }), SHORTEST + 60)
+      assert.equal((await good()).next({ usual: SHORTEST + 61 }), SHORTEST)
+      assert.equal((await good()).next({ usual: SHORTEST + 50, timeout: 200 }), SHORTEST + 50)
+      assert.equal((await good()).next({ usual: SHORTEST + 51, timeout: 200 }), SHORTEST)
+    })
+
+    for (const [what, then] of /** @type {[string, (bench: any) => any][]} */ ([
+      ['an error', bench => bench.come(100, toy.answer(5, []))],
+      ['silence', bench => bench.clock.advance(1100)]
+    ])) {
+      it(`no longer after ${what}, until the next good one`, async () => {
+        const bench = await good()
+        bench.next()
+        await then(bench)
+        assert.equal(bench.ended.length, 2)
+        assert.equal(bench.next({ usual: SHORTEST + 60 }), SHORTEST)
+        await bench.come(bench.clock.now() + 70, toy.answer(5, Array(60).fill(7)))
+        assert.equal(bench.next({ usual: SHORTEST + 60 }), SHORTEST + 60)
+      })
+    }
+
+    it('no longer after the port was opened anew', async () => {
+      const bench = await good()
+      bench.opened()
+      assert.equal(bench.next({ usual: SHORTEST + 60 }), SHORTEST)
+    })
   })
 
   it('an error that came meanwhile is seen then, and its header is believed, not what is usual', async () => {

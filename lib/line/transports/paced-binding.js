@@ -4,6 +4,8 @@ const fs = require('node:fs')
 
 /** Timers count whole ms: what is nearer than one (ms) is waited for by the descriptor itself. */
 const LEAST = 1
+/** They fire so much (ms) later than asked for. */
+const LATE = 0.3
 
 const isAgain = error => error.code === 'EAGAIN' || error.code === 'EWOULDBLOCK' || error.code === 'EINTR'
 
@@ -62,8 +64,8 @@ function createPace(clock) {
     },
     /** A promise, or null: it is time. */
     sleep: () => {
-      // the nearest whole ms: half of them a little late, and after the others what is still missing is hardly a byte
-      const wait = Math.round(at - clock.now())
+      // the nearest whole ms; timers are a little late, so rather the one before. Of what is still missing then the descriptor tells
+      const wait = Math.round(at - clock.now() - LATE)
       if (!(wait >= LEAST)) return null
       return new Promise(resolve => {
         const timer = clock.setTimer(() => wake(), wait)

@@ -123,6 +123,24 @@ describe('binding that reads by wire time', () => {
     assert.equal(clock.pending(), 0)
   })
 
+  it('sleeps whole milliseconds, rather one less: timers are late', async () => {
+    for (const [until, sleeps] of [
+      [20.7, 20],
+      [20.9, 21],
+      [1.7, 1]
+    ]) {
+      const port = await open()
+      results = [1]
+      pace.hint(clock.now() + until)
+      const read = reading(port)
+      await clock.advance(sleeps - 0.1)
+      assert.equal(read.end, null)
+      await clock.advance(0.1)
+      await soon()
+      assert.equal(read.end, 1, String(until))
+    }
+  })
+
   describe('where the first byte tells when the others can be there', () => {
     const begun = async (hint = { rest: 20, latest: 100 }) => {
       const port = await open()

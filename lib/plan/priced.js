@@ -152,10 +152,16 @@ const explore = (search, { steps, mostMixed }) => {
 
 const cheapest = (frames, key) => frames.reduce((best, frame) => (frame[key] < best[key] ? frame : best))
 
+const groupsIn = chunks => {
+  const all = []
+  for (const { groups } of chunks) for (const group of groups) all.push(group)
+  return all
+}
+
 /** All requests that can hold a set of chunks, for each set; one that none can hold after all is read chunk by chunk. @returns {Frame[][]} */
 const formsOf = (sets, model) =>
   sets.flatMap(chunks => {
-    const forms = model.frames(chunks.flatMap(({ groups }) => groups))
+    const forms = model.frames(groupsIn(chunks))
     return forms.length > 0 ? [forms] : chunks.map(({ groups }) => model.frames(groups))
   })
 

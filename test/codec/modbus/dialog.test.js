@@ -48,6 +48,11 @@ describe('MODBUS conversation: as the manual draws it', () => {
     })
   }
 
+  it('tells how long an answer without a fault is', () => {
+    const usual = protocol => readDialog(WORDS, { station: STATION, protocol }).next().value.usual
+    assert.deepEqual([usual('rtu'), usual('ascii')], [R.length, framed('ascii', R.subarray(0, -2)).length])
+  })
+
   it('waits 1 s; timeout and gap are settable', () => {
     const times = options => read([R], options).steps.map(step => [step.gap, step.timeout])
     assert.deepEqual(times(), [[0, 1000]])
@@ -133,8 +138,10 @@ describe('MODBUS conversation: the bytes may be made by another', () => {
     ]
     for (const answer of odd) {
       const { error } = read([R], { attempts: 1, exchange: made(null, answer) })
-      assert.equal(error.code, 'BAD_ANSWER')
+      assert.deepEqual([error.code, error.details.station], ['BAD_ANSWER', STATION])
     }
+    const { error } = read([R], { attempts: 1, exchange: made(null, odd[1]) })
+    assert.equal(error.details.reason, 'it has other values than were asked for')
     assert.equal(read([R, R], { exchange: made(null, odd[0]), attempts: 2 }).steps.length, 2)
   })
 

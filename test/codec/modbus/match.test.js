@@ -280,6 +280,7 @@ describe('MODBUS match: our own echo', () => {
       const q = framed(protocol, '11 03 06 00 00 03')
       const r = framed(protocol, BODY)
       const look = match(query, { protocol, sent: q })
+      assert.deepEqual(look(q), { skip: q.length })
       assert.deepEqual(receive(look, [q, r]).take, r, protocol)
       assert.deepEqual(receive(look, [Buffer.concat([q, r])]).take, r, protocol)
       assert.deepEqual(receive(look, bytesOf(Buffer.concat([q, r]))).take, r, protocol)
@@ -499,6 +500,58 @@ describe('MODBUS match: noise is no echo', () => {
     })
   }
 
+  it('RTU: nor a short one: an exception, or the acknowledgement of a write', () => {
+    const asked = [
+      [WORDS, '11 03 00 6B 00 03', ['11 83 02', BODY]],
+      [WRITE, '11 10 00 01 00 02 04 00 0A 01 02', ['11 90 02', '11 10 00 01 00 02']],
+      [{ fn: 1, base: 19, count: 1 }, '11 01 00 13 00 01', ['11 81 02', '11 01 01 01']]
+    ]
+    for (const [query, request, answers] of /** @type {[any, string, string[]][]} */ (asked)) {
+      const look = match(query, { sent: framed('rtu', request) })
+      for (const body of answers) {
+        const r = framed('rtu', body)
+        for (let length = 1; length < 16; length++) {
+          for (const byte of [0xaa, 0x41, 0xff]) {
+            const noise = Buffer.alloc(length, byte)
+            for (const chunks of [[Buffer.concat([noise, r])], bytesOf(Buffer.concat([noise, r]))]) {
+              const got = receive(look, chunks)
+              assert.deepEqual([got.take, got.skipped], [r, length], `${body} behind ${length} × ${byte}`)
+            }
+          }
+        }
+      }
+    }
+  })
+
+  it('RTU: a quarter of the echo may be damaged, not one byte more: then an exception is looked for in it', () => {
+    // 11 83 stands where the request names its address
+    const query = { fn: 3, base: 0x1183, count: 3 }
+    const sent = framed('rtu', '11 03 11 83 00 03')
+    const look = match(query, { sent })
+    // not its function, which makes another request of it
+    for (const places of [[0], [4], [7], [0, 4], [0, 7], [5, 6], [0, 4, 5], [0, 6, 7], [0, 4, 5, 6]]) {
+      const heard = Buffer.from(sent)
+      for (const at of places) heard[at] ^= 0x55
+      const got = receive(look, [heard])
+      const few = places.length <= 2
+      assert.deepEqual([got.skipped, got.bad], few ? [8, undefined] : [2, 'CRC'], `${places}`)
+    }
+  })
+
+  it('RTU: the echo of a write, damaged in its values, with the acknowledgement behind it', () => {
+    const q = framed('rtu', '11 10 00 01 00 02 04 00 0A 01 02')
+    const ack = framed('rtu', '11 10 00 01 00 02')
+    const look = match(WRITE, { sent: q })
+    for (const places of [[8], [9, 10], [8, 9, 10], [9, 11, 12], [7, 8, 9], [6, 8, 9]]) {
+      const heard = Buffer.from(q)
+      for (const at of places) heard[at] ^= 0x55
+      for (const chunks of [[heard, ack], [Buffer.concat([heard, ack])], bytesOf(Buffer.concat([heard, ack]))]) {
+        const got = receive(look, chunks)
+        assert.deepEqual([got.take, got.skipped, got.bad], [ack, q.length, undefined], `${places}`)
+      }
+    }
+  })
+
   // the request 11 03 06 00 00 03 begins as its answer does
   const query = { fn: 3, base: 0x0600, count: 3 }
   it('ASCII: up to a quarter of it may be damaged, and not one more', () => {
@@ -510,6 +563,22 @@ describe('MODBUS match: noise is no echo', () => {
       const heard = Buffer.from(q)
       for (let i = 0; i < count; i++) heard[8 + i] = heard[8 + i] === 0x39 ? 0x38 : 0x39
       assert.deepEqual(look(heard), count <= 4 ? { skip: 17 } : { bad: 'LRC', length: 17 }, `${count}`)
+    }
+  })
+
+  it('ASCII: of an echo that has not ended the rest is waited for; behind it the answer is taken', () => {
+    const q = framed('ascii', '11 03 06 00 00 03')
+    const r = framed('ascii', BODY)
+    const look = match(query, { protocol: 'ascii', sent: q })
+    const heard = Buffer.from(q)
+    heard[9] = 0x39
+    const got = receive(look, bytesOf(Buffer.concat([heard, r])))
+    assert.deepEqual([got.take, got.skipped], [r, q.length])
+    // longer than the answer, and begins like it: its end is still to come
+    const write = framed('ascii', '11 10 00 01 00 02 04 00 0A 01 02')
+    const end = match(WRITE, { protocol: 'ascii', sent: write })
+    for (let length = 17; length < write.length - 1; length++) {
+      assert.deepEqual(end(write.subarray(0, length)), { need: write.length }, `${length}`)
     }
   })
 

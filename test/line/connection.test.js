@@ -8,7 +8,7 @@ const { createVirtualClock } = require('../../lib/sim/clock')
 const noClaims = /** @type {any} */ ({ take() {}, release() {} })
 
 /** A connection over transports of the test; `closes: false`: their close is told by the test. */
-const create = ({ closes = true, random = () => 0.5 } = {}) => {
+const create = ({ closes = true, random = () => 0.5, claims = noClaims } = {}) => {
   const clock = createVirtualClock()
   const told = []
   const made = []
@@ -32,7 +32,7 @@ const create = ({ closes = true, random = () => 0.5 } = {}) => {
     clock,
     make,
     random,
-    claims: noClaims,
+    claims,
     told: {
       opened: () => told.push('opened'),
       data: bytes => told.push(`${bytes}`),
@@ -56,6 +56,58 @@ describe('line: one connection after the other', () => {
     let stopped = 0
     connection.stop(() => stopped++)
     assert.equal(stopped, 1)
+  })
+
+  it('claims what it opens, and gives it free when it is lost', () => {
+    const log = []
+    const claims = { take: id => void log.push(`take ${id}`), release: id => void log.push(`release ${id}`) }
+    const { connection, made } = create({ claims })
+    assert.equal(connection.id, undefined)
+    connection.start()
+    made[0].handlers.opened()
+    assert.deepEqual([connection.id, log], ['t1', ['take t1']])
+    made[0].handlers.closed(gone)
+    assert.deepEqual([connection.id, log], [undefined, ['take t1', 'release t1']])
+    connection.stop(() => log.push('stopped'))
+    assert.deepEqual(log.slice(2), ['stopped'])
+  })
+
+  it('a claim that is refused is a failed attempt; nothing is given free', () => {
+    const log = []
+    const claims = {
+      take() {
+        throw gone
+      },
+      release: id => log.push(id)
+    }
+    const { connection, told } = create({ claims })
+    connection.start()
+    assert.deepEqual([told, log, connection.id], [[['PORT_GONE', false]], [], undefined])
+    connection.stop(() => {})
+  })
+
+  it('while it is closed to be opened anew nothing is written', () => {
+    const { connection, made } = create({ closes: false })
+    connection.start()
+    made[0].handlers.opened()
+    connection.restart(gone)
+    const ends = []
+    connection.write(Buffer.from('A'), error => ends.push(error?.code))
+    assert.deepEqual([connection.isOpen, ends], [false, ['LINE_DOWN']])
+  })
+
+  it('a transport that tells twice that it has closed does not end the close of the next one', () => {
+    const { connection, made } = create({ closes: false })
+    const ends = []
+    for (const name of ['first', 'second']) {
+      connection.start()
+      made.at(-1).handlers.opened()
+      connection.stop(() => ends.push(name))
+      made[0].closed()
+    }
+    assert.deepEqual(ends, ['first'])
+    made[1].closed()
+    assert.deepEqual(ends, ['first', 'second'])
   })
 
   it('a transport that tells nothing of waiting bytes, and cannot be asked', () => {

@@ -85,6 +85,17 @@ describe('line: queue', () => {
     assert.equal(queue.waiting('key'), undefined)
   })
 
+  it('of two under one key the newer one is known, whatever becomes of the older one', () => {
+    const queue = filled([
+      ['old', POLL, 1, 'key'],
+      ['new', POLL, 1, 'key'],
+      ['none', POLL, 2]
+    ])
+    assert.equal(queue.waiting(null), undefined, 'no key is none')
+    assert.equal(queue.next(always).name, 'old')
+    assert.equal(queue.waiting('key').name, 'new')
+  })
+
   it('removes', () => {
     const queue = filled([['p', POLL, 1, 'key']])
     const entry = queue.waiting('key')

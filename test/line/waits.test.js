@@ -30,6 +30,13 @@ describe('line: how long a station took lately', () => {
     assert.equal(filled(...span(1, 200), ...new Array(200).fill(5)).p99, 5)
   })
 
+  it('on the average, of the last 200', () => {
+    assert.equal(filled().mean, null)
+    assert.equal(filled(7).mean, 7)
+    assert.equal(filled(10, 20, 60).mean, 30)
+    assert.equal(filled(...span(1000, 1199), ...span(1, 200)).mean, 100.5)
+  })
+
   it('is kept in the memory of the station; of one that has none nothing is known', () => {
     const stats = new Stats()
     stats.waited(1, 50)

@@ -306,6 +306,7 @@ describe('nx-read', () => {
     for (const id of Object.keys(warnings)) {
       helper.getNode(id).on('call:warn', call => warnings[id].push(call.args[0]))
     }
+    const seen = statuses('read')
     wire.faults.set('late', 1, 40)
     await until(() => warnings.plc.length > 0 && warnings.plc2.length > 0, 'the advice')
     const told = () => helper.log().args.filter(([{ msg }]) => /Raise the timeout/.test(msg)).length
@@ -313,6 +314,7 @@ describe('nx-read', () => {
     assert.match(warnings.plc[0], /Station 1 answers \d+ ms after its timeout of 30 ms\. Raise the timeout to \d+00 ms/)
     assert.match(warnings.plc2[0], /Station 2 answers/)
     assert.equal(told(), 2)
+    await until(() => seen.some(({ text }) => /^raise timeout: \d+/.test(text)), 'a status that gives the advice')
   })
 
   it('a simulated line marks its messages and its status', async () => {

@@ -2,6 +2,7 @@
 
 const assert = require('node:assert/strict')
 const { createPool } = require('../../lib/line')
+const { Quarantine } = require('../../lib/line/quarantine')
 const { simulated } = require('../../lib/line/transports/memory')
 const { createVirtualClock } = require('../../lib/sim')
 const { createBench, failure } = require('./support/bench')
@@ -291,5 +292,119 @@ describe('line: quarantine', () => {
     for (let i = 0; i < 200; i++) bench.wire.handlers.data(Buffer.alloc(500, 0x41))
     bench.wire.onQuery = stations({})
     assert.deepEqual(await bench.run(ask(bench, 100)), [101])
+  })
+})
+
+describe('line: late answers of several stations', () => {
+  const TIMES = { timeout: 200, latenessBound: 0 }
+  const create = () => {
+    const clock = createVirtualClock()
+    const told = []
+    const quarantine = new Quarantine({
+      clock,
+      memories: new Map(),
+      late: ({ station, lateness }, frame) => told.push([station, lateness, frame.toString('hex')]),
+      freed: () => told.push('freed'),
+      hasPast: false
+    })
+    /** Asked now, and not answered until 200 ms later. */
+    const unanswered = async (station, match) => {
+      quarantine.asks(station, TIMES)
+      const due = clock.now() + 200
+      await clock.advance(200)
+      quarantine.failed({ station, match, due, timeout: 200, seen: Buffer.alloc(0) })
+    }
+    return { clock, told, quarantine, unanswered }
+  }
+  const answer = (...bytes) => Buffer.from(bytes)
+  /** Frames of two bytes that begin so. */
+  const begins = first => bytes => (bytes[0] !== first ? { skip: 1 } : bytes.length < 2 ? { need: 2 } : { take: 2 })
+
+  it('in one chunk are all seen, whatever their order', async () => {
+    for (const [one, two] of [
+      [1, 2],
+      [2, 1]
+    ]) {
+      const { clock, told, quarantine, unanswered } = create()
+      await unanswered(1, begins(1))
+      await unanswered(2, begins(2))
+      await clock.advance(100)
+      quarantine.offer(answer(one, 0xaa, two, 0xbb))
+      assert.deepEqual(told.map(([station]) => station).sort(), [1, 2])
+    }
+  })
+
+  it('are seen in pieces, not before they are whole', async () => {
+    const { clock, told, quarantine, unanswered } = create()
+    await unanswered(1, () => ({ take: 4 }))
+    await clock.advance(100)
+    quarantine.offer(answer(1, 2))
+    assert.deepEqual(told, [])
+    quarantine.offer(answer(3, 4))
+    assert.deepEqual(told, [[1, 100, '01020304']])
+  })
+
+  it('an answer of another station takes nothing from them, nor does one that is none of theirs', async () => {
+    const any = bytes => (bytes.length < 2 ? { need: 2 } : { take: 2 })
+    for (const [match, station, frame] of /** @type {[any, number, Buffer][]} */ ([
+      [any, 2, answer(2, 0)],
+      [begins(1), 1, answer(7, 0)]
+    ])) {
+      const { clock, told, quarantine, unanswered } = create()
+      await unanswered(1, match)
+      quarantine.answered(station, frame)
+      await clock.advance(50)
+      quarantine.offer(answer(1, 0xaa))
+      assert.deepEqual(told, [[1, 50, '01aa']])
+    }
+  })
+
+  it('an answer that is like theirs makes them unknown', async () => {
+    const { clock, told, quarantine, unanswered } = create()
+    await unanswered(1, begins(1))
+    quarantine.answered(1, answer(1, 0xaa))
+    await clock.advance(50)
+    quarantine.offer(answer(1, 0xaa))
+    assert.deepEqual(told, [])
+  })
+
+  it('one that comes when it was due is in time: the station is free', async () => {
+    const { clock, told, quarantine, unanswered } = create()
+    await unanswered(1, begins(1))
+    const end = clock.now()
+    quarantine.offer(answer(1, 0xaa))
+    assert.deepEqual([told, quarantine.readyAt(1)], [['freed'], end])
+  })
+
+  it('older than what was answered since: here answers overtake each other', async () => {
+    const overtaken = async (before, later) => {
+      const { clock, quarantine, unanswered } = create()
+      if (before) quarantine.cleared(1)
+      await unanswered(1, begins(1))
+      await clock.advance(later ?? 0)
+      if (later !== null) quarantine.cleared(1)
+      await clock.advance(50)
+      quarantine.offer(answer(1, 0xaa))
+      return quarantine.memory(1).overtaken
+    }
+    assert.deepEqual(
+      [await overtaken(true, null), await overtaken(false, null), await overtaken(false, 0), await overtaken(true, 10)],
+      [undefined, undefined, true, true]
+    )
+  })
+
+  it('the end of a silence that is seen late gets a moment, also if it was asked for before; one that is seen in time does not', async () => {
+    const { clock, quarantine, unanswered } = create()
+    await unanswered(1, begins(1))
+    const until = quarantine.readyAt(1)
+    assert.equal(until, 1200)
+    await clock.advance(1000 + 3)
+    assert.equal(quarantine.readyAt(1), 1203 + 10)
+    const other = create()
+    await other.unanswered(1, begins(1))
+    await other.clock.advance(1000)
+    assert.equal(other.quarantine.readyAt(1), 1200)
+    await other.clock.advance(50)
+    assert.equal(other.quarantine.readyAt(1), 1200)
   })
 })

@@ -208,6 +208,19 @@ describe('what is known of answers that were taken', () => {
     assert.equal(repeats.isOld(A, { length: LENGTH, sentAt: 0, now: 1 }), true)
   })
 
+  it('there fifty milliseconds are long', () => {
+    const early = { length: LENGTH, sentAt: 0, now: 1 }
+    for (const [length, proves] of /** @type {[number, boolean][]} */ ([
+      [91, false],
+      [92, true]
+    ])) {
+      const repeats = new Repeats({ character: 0.5, transport: 'tcp' })
+      repeats.opened('host:4001')
+      for (let n = 0; n < 20; n++) repeats.answered(Buffer.alloc(length, 1), { length: LENGTH, sentAt: 0, now: 60 })
+      assert.equal(repeats.isOld(A, early), proves, `${length}`)
+    }
+  })
+
   it('two steps that fail after one was dropped tell of a faster wire; others do not', () => {
     const repeats = paced(A)
     for (let n = 0; n < 3; n++) repeats.failed()

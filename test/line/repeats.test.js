@@ -209,7 +209,7 @@ describe('what is known of answers that were taken', () => {
   })
 
   it('there fifty milliseconds are long', () => {
-    const early = { length: LENGTH, sentAt: 0, now: 1 }
+    const soon = { length: LENGTH, sentAt: 0, now: 1 }
     for (const [length, proves] of /** @type {[number, boolean][]} */ ([
       [91, false],
       [92, true]
@@ -217,7 +217,7 @@ describe('what is known of answers that were taken', () => {
       const repeats = new Repeats({ character: 0.5, transport: 'tcp' })
       repeats.opened('host:4001')
       for (let n = 0; n < 20; n++) repeats.answered(Buffer.alloc(length, 1), { length: LENGTH, sentAt: 0, now: 60 })
-      assert.equal(repeats.isOld(A, early), proves, `${length}`)
+      assert.equal(repeats.isOld(A, soon), proves, `${length}`)
     }
   })
 

@@ -1,5 +1,6 @@
 'use strict'
 
+const { PRIORITY } = require('./queue')
 const { copyOf } = require('./run')
 
 /**
@@ -77,6 +78,7 @@ class Driver {
     this.#exchange.start(step, {
       gap: Math.max(this.#least.gap, step.gap ?? 0, run.gap),
       station,
+      calm: run.priority === PRIORITY.POLL && this.#scheduler.size === 0,
       sent: () => this.#sent(run),
       done: (error, answer, facts) => this.#ended(run, error, answer, facts)
     })

@@ -1,7 +1,7 @@
 'use strict'
 
 const { PlcError } = require('../error')
-const { Awaited } = require('./awaited')
+const { Hints } = require('./hints')
 const { EMPTY, Receiver } = require('./receiver')
 const { Repeats } = require('./repeats')
 const { Silence } = require('./silence')
@@ -24,7 +24,7 @@ class Exchange {
   #settings
   #rx = new Receiver()
   #repeats
-  #awaited
+  #hints
   #silence
   /** @type {any} */
   #job = null
@@ -43,14 +43,14 @@ class Exchange {
     this.#times = times
     this.#echo = echo
     this.#link = link
-    this.#awaited = new Awaited(times)
+    this.#hints = new Hints({ times, echo, link })
     this.#repeats = new Repeats({ character: times.character, transport: settings.transport })
     this.#silence = new Silence({ clock, quietSince: () => this.quietSince })
   }
 
   /** The port was opened. @param {unknown} id what its transport claims */
   opened(id) {
-    this.#awaited.forget()
+    this.#hints.opened()
     this.#repeats.opened(id)
   }
 
@@ -66,13 +66,16 @@ class Exchange {
 
   /**
    * @param {any} step of a conversation
-   * @param {{ gap: number, station: any, sent: () => void, done: (error: any, answer: Buffer, facts: any) => void }} options
+   * @param {{ gap: number, station: any, calm?: boolean, sent: () => void, done: (error: any, answer: Buffer, facts: any) => void }} options
+   *   calm: nobody is in a hurry for the answer
    *   facts: `{ due, sent, ms, wait, rest }` — when the answer should have begun; whether a byte went out; ms since the end of sending, and
    *   from there to the first byte; what came behind the answer
    */
-  start(step, { gap, station, sent, done }) {
+  start(step, { gap, station, calm = false, sent, done }) {
     const now = this.#clock.now()
-    this.#job = { step, station, sent, done, phase: 'gap', from: now, due: 0, written: false, ours: 0, bytes: 0 }
+    const turnaround = calm ? this.#hints.turnaroundOf(station) : null
+    const counts = { from: now, due: 0, ours: 0, bytes: 0, reads: 0 }
+    this.#job = { step, station, sent, done, phase: 'gap', written: false, turnaround, ...counts }
     this.#silence.wait(
       gap,
       () => this.#send(),
@@ -115,15 +118,9 @@ class Exchange {
 
   /** Tells the transport how long nobody needs to read: after sending, and after a part of the answer. */
   #hint(job, fresh) {
-    const { step, need, ours } = job
-    const count = (ours ? need : this.#awaited.bytes(step, need, this.#echo.expected)) - this.#rx.bytes.length
-    if (count <= 0) return
-    const { character } = this.#times
-    if (fresh) return this.#link.hint(count, this.#lastByteAt + count * character)
-    // our own echo comes while we send
-    const echo = this.#rx.bytes.length === 0 ? this.#echo.expected : 0
-    const latest = this.#sendEnd + step.timeout
-    this.#link.hint(count, this.#sendEnd + (count - echo) * character, { rest: (count - 1) * character, latest })
+    const { length } = this.#rx.bytes
+    if (fresh) this.#hints.more(job, length, this.#lastByteAt)
+    else this.#hints.sent(job, length, this.#sendEnd)
   }
 
   /** Bytes arrived. @param {Buffer} bytes */
@@ -133,6 +130,7 @@ class Exchange {
     const job = this.#job
     if (!job) return this.#link.stray(bytes)
     job.bytes += bytes.length
+    job.reads++
     if (job.phase !== 'awaiting' || !job.step.match) return this.#link.stray(bytes)
     const dropped = this.#rx.push(bytes, now)
     if (dropped.length > 0) this.#link.skipped(dropped)
@@ -176,7 +174,6 @@ class Exchange {
           continue
         }
         this.#repeats.answered(frame, this.#query)
-        this.#awaited.answered(frame, step)
         this.#echo.answered(frame)
         this.#settle(null, frame)
         return verdict
@@ -295,13 +292,11 @@ class Exchange {
   #settle(error, bytes = EMPTY) {
     const job = this.#job
     this.#idle()
-    if (error) {
-      this.#repeats.failed()
-      this.#awaited.forget()
-    }
+    if (error) this.#repeats.failed()
     const rest = this.#rx.takeAll()
     const ms = this.#clock.now() - this.#sendEnd
     const wait = Math.max(0, ms - bytes.length * this.#times.character)
+    this.#hints.ended(job, error ? null : bytes, wait)
     job.done(error, bytes, { due: this.#dueEnd(job), rest, sent: job.phase === 'awaiting', ms, wait })
   }
 }

@@ -35,14 +35,21 @@ const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off'), timeout =
   const settings = { jamTime: 1000, writeTimeout: 1000 }
   const exchange = new Exchange({ clock, settings, times, echo: new Echo(echo, clock.now), link })
   const done = (error, answer) => bench.ended.push(error?.code ?? answer.length)
-  const ask = more => {
+  const ask = ({ calm = false, ...more }) => {
     const step = { send: toy.query(5), match: toy.answerTo(5), timeout, usual, ...more }
-    exchange.start(step, { gap: 0, station: 5, sent() {}, done })
+    exchange.start(step, { gap: 0, station: 5, calm, sent() {}, done })
   }
   ask({})
   const come = async (ms, bytes) => {
     await clock.advance(ms - clock.now())
     exchange.data(bytes)
+  }
+  /** Its last byte comes so many ms after the query has left. */
+  const answerIn = async (ms, { parts = 1, values = 20 } = {}) => {
+    const answer = toy.answer(5, Array(values).fill(7))
+    const end = exchange.sendEnd + ms
+    if (parts > 1) await come(end - 20, answer.subarray(0, 5))
+    await come(end, parts > 1 ? answer.subarray(5) : answer)
   }
   /** For how many bytes the next one waits. */
   const next = (more = {}) => {
@@ -50,7 +57,7 @@ const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off'), timeout =
     return bench.hints.at(-1)?.[0]
   }
   const opened = () => exchange.opened('again')
-  return Object.assign(bench, { come, next, opened, last: () => bench.hints.at(-1) })
+  return Object.assign(bench, { come, answerIn, next, opened, last: () => bench.hints.at(-1) })
 }
 
 describe('what the transport is told to wait for', () => {
@@ -129,6 +136,94 @@ describe('what the transport is told to wait for', () => {
       const bench = await good()
       bench.opened()
       assert.equal(bench.next({ usual: SHORTEST + 60 }), SHORTEST)
+    })
+  })
+
+  describe('where nobody is in a hurry', () => {
+    const TOOK = 10
+    const MARGIN = 0.5
+    const WHOLE = TOOK + 25
+    /** Four answers, read byte by byte as far as it matters. */
+    const known = async (more = {}) => {
+      const bench = begin({ usual: 25, timeout: 200, ...more })
+      for (let n = 0; n < 4; n++) {
+        if (n > 0) bench.next()
+        await bench.answerIn(WHOLE)
+      }
+      return bench
+    }
+    const hint = bench => bench.hints.at(-1)
+    const wholeAt = bench => bench.clock.now() + SENT + WHOLE + MARGIN
+
+    it('once, when the whole answer is there, as long as the station has taken lately', async () => {
+      const bench = await known()
+      const at = wholeAt(bench)
+      bench.next({ calm: true })
+      assert.deepEqual([hint(bench), bench.behind.at(-1)], [[25, at], undefined])
+      bench.next({ calm: true })
+    })
+
+    it('not where somebody is', async () => {
+      const bench = await known()
+      const now = bench.clock.now()
+      bench.next()
+      assert.deepEqual(hint(bench), [25, now + SENT + 25])
+      assert.deepEqual(bench.behind.at(-1), { rest: 24, latest: now + SENT + 200 })
+    })
+
+    it('not after so long that the timer of its timeout might come before', async () => {
+      const bench = await known()
+      const [now, took] = [bench.clock.now(), SHORTEST + TOOK + MARGIN]
+      bench.next({ calm: true, usual: undefined, timeout: took + 5 })
+      assert.deepEqual(hint(bench), [SHORTEST, now + SENT + SHORTEST])
+      await bench.answerIn(WHOLE - 25 + SHORTEST, { values: 0 })
+      const then = bench.clock.now()
+      bench.next({ calm: true, usual: undefined, timeout: took + 5.1 })
+      assert.deepEqual(hint(bench), [SHORTEST, then + SENT + took])
+    })
+
+    it('an answer that was there when it was looked at tells nothing of the station; one that came then does', async () => {
+      const bench = await known()
+      for (let n = 0; n < 8; n++) {
+        bench.next({ calm: true })
+        await bench.answerIn(WHOLE + 30)
+      }
+      let at = wholeAt(bench)
+      bench.next({ calm: true })
+      assert.deepEqual(hint(bench), [25, at])
+      await bench.answerIn(WHOLE)
+      for (let n = 0; n < 4; n++) {
+        bench.next({ calm: true })
+        await bench.answerIn(WHOLE + 7, { parts: 2 })
+      }
+      at = wholeAt(bench) + 7
+      bench.next({ calm: true })
+      assert.deepEqual(hint(bench), [25, at])
+    })
+
+    it('nothing is known after a failure but of the length, after an opening nothing at all', async () => {
+      const bench = await known()
+      bench.next()
+      await bench.clock.advance(300)
+      const at = wholeAt(bench)
+      bench.next({ calm: true })
+      assert.deepEqual(hint(bench), [25, at])
+      await bench.answerIn(WHOLE)
+      bench.opened()
+      const now = bench.clock.now()
+      bench.next({ calm: true })
+      assert.deepEqual(hint(bench), [25, now + SENT + 25])
+    })
+
+    it('a step without an answer tells nothing', async () => {
+      const bench = await known()
+      for (let n = 0; n < 4; n++) {
+        bench.next({ match: undefined, turnaround: 100 })
+        await bench.clock.advance(150)
+      }
+      const at = wholeAt(bench)
+      bench.next({ calm: true })
+      assert.deepEqual(hint(bench), [25, at])
     })
   })
 

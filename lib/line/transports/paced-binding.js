@@ -2,11 +2,6 @@
 
 const fs = require('node:fs')
 
-/** Timers count whole ms: what is nearer than one (ms) is waited for by the descriptor itself. */
-const LEAST = 1
-/** They fire so much (ms) later than asked for. */
-const LATE = 0.3
-
 const isAgain = error => error.code === 'EAGAIN' || error.code === 'EWOULDBLOCK' || error.code === 'EINTR'
 
 const canceled = () => Object.assign(new Error('Port is not open'), { canceled: true })
@@ -35,54 +30,24 @@ const writeNow = (fd, bytes) => {
   }
 }
 
-/** Resolves when the descriptor can be read, or has hung up. */
-const readable = poller =>
-  new Promise((resolve, reject) => poller.once('readable', error => (error ? reject(error) : resolve(undefined))))
-
-const ALL = { rest: 0, latest: -Infinity }
-
-/** When the next bytes can be there at the earliest; who sleeps until then can be woken. */
-function createPace(clock) {
-  let at = -Infinity
-  let more = ALL
-  let wake = null
-  return {
-    /** @param {number} when @param {{ rest: number, latest: number }} [behind] see `hint` of a transport */
-    hint: (when, behind = ALL) => {
-      at = when
-      more = behind
-    },
-    /** The first byte has come. */
-    begun: () => {
-      const when = clock.now() + more.rest
-      if (when <= more.latest) at = when
-      more = ALL
-    },
-    /** Something was read: what comes now is something else. */
-    done: () => {
-      more = ALL
-    },
-    /** A promise, or null: it is time. */
-    sleep: () => {
-      // the nearest whole ms; timers are a little late, so rather the one before. Of what is still missing then the descriptor tells
-      const wait = Math.round(at - clock.now() - LATE)
-      if (!(wait >= LEAST)) return null
-      return new Promise(resolve => {
-        const timer = clock.setTimer(() => wake(), wait)
-        wake = () => {
-          wake = null
-          clock.clearTimer(timer)
-          resolve(undefined)
-        }
-      })
-    },
-    stop: () => {
-      at = -Infinity
-      more = ALL
-      wake?.()
+/** Whether the descriptor can be read, or has hung up; false: nobody wants to know any more. @returns {Promise<boolean>} */
+const readable = (poller, pace) =>
+  new Promise((resolve, reject) => {
+    const told = error => {
+      pace.watch(null)
+      if (error) reject(error)
+      else resolve(true)
     }
-  }
-}
+    poller.once('readable', told)
+    pace.watch(() => {
+      // it would end the wait of a write that is under way, too
+      if (poller.listenerCount('writable') > 0) return
+      pace.watch(null)
+      poller.off('readable', told)
+      poller.stop()
+      resolve(false)
+    })
+  })
 
 /**
  * A binding of serialport whose ports read by wire time: not at every byte, but when the awaited ones can be there. And a
@@ -90,7 +55,7 @@ function createPace(clock) {
  * Where there is no descriptor (Windows, mock) the wrapped read is used.
  *
  * @param {any} binding of serialport
- * @param {ReturnType<typeof createPace>} pace
+ * @param {import('./pace').Pace} pace
  */
 function pacedBinding(binding, pace) {
   return {
@@ -122,8 +87,7 @@ function pacedBinding(binding, pace) {
 
 /** Resolves when bytes have come, and those that belong to the first of them can be there, too. */
 const begun = async (poller, pace) => {
-  await readable(poller)
-  pace.begun()
+  if (await readable(poller, pace)) pace.begun()
   await pace.sleep()
 }
 
@@ -140,4 +104,4 @@ async function read(port, target, pace) {
   }
 }
 
-module.exports = { createPace, pacedBinding }
+module.exports = { pacedBinding }

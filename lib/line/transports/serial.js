@@ -4,7 +4,8 @@ const fs = require('node:fs')
 const { PlcError } = require('../../error')
 const { notAPort } = require('./device-file')
 const { Intake } = require('./intake')
-const { createPace, pacedBinding } = require('./paced-binding')
+const { Pace } = require('./pace')
+const { pacedBinding } = require('./paced-binding')
 const { goneError, openError } = require('./port-errors')
 
 const flow = {
@@ -60,7 +61,7 @@ class SerialTransport {
     this.#settings = settings
     this.#clock = clock
     this.#binding = binding
-    this.#pace = createPace(clock)
+    this.#pace = new Pace(clock)
     this.#intake = new Intake({
       clock,
       data: bytes => this.#handlers.data(bytes),

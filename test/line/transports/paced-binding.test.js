@@ -2,7 +2,8 @@
 
 const assert = require('node:assert/strict')
 const fs = require('node:fs')
-const { createPace, pacedBinding } = require('../../../lib/line/transports/paced-binding')
+const { Pace } = require('../../../lib/line/transports/pace')
+const { pacedBinding } = require('../../../lib/line/transports/paced-binding')
 const { createVirtualClock } = require('../../../lib/sim')
 
 const fault = code => Object.assign(new Error(code), { code })
@@ -21,7 +22,7 @@ describe('binding that reads by wire time', () => {
   }
   beforeEach(() => {
     clock = createVirtualClock()
-    pace = createPace(clock)
+    pace = new Pace(clock)
     log = []
     results = []
     fs.readSync = /** @type {any} */ (() => system('read'))
@@ -35,10 +36,14 @@ describe('binding that reads by wire time', () => {
       fd: 77,
       told: /** @type {any[]} */ ([]),
       poller: {
+        writers: 0,
         once(event, done) {
           log.push(event)
           port.told.push(done)
-        }
+        },
+        off: (event, done) => log.push(`off ${event} ${port.told.indexOf(done)}`),
+        stop: () => log.push('stop'),
+        listenerCount: event => (event === 'writable' ? port.poller.writers : 1)
       },
       read: async () => ({ bytesRead: 99 }),
       write: async bytes => void log.push(`wrapped ${bytes.toString('hex')}`),
@@ -139,6 +144,89 @@ describe('binding that reads by wire time', () => {
       await soon()
       assert.equal(read.end, 1, String(until))
     }
+  })
+
+  describe('where nobody asks when the first byte comes', () => {
+    it('the wait for it is given up: it is read once', async () => {
+      const port = await open()
+      const read = reading(port)
+      await soon()
+      pace.hint(clock.now() + 30)
+      assert.deepEqual(log, ['readable', 'off readable 0', 'stop'])
+      results = [9]
+      await clock.advance(29)
+      assert.equal(read.end, null)
+      await clock.advance(1)
+      await soon()
+      assert.deepEqual([read.end, log.length, clock.pending()], [9, 4, 0])
+    })
+
+    it('and if there is nothing yet, or a part, as ever', async () => {
+      const port = await open()
+      const read = reading(port)
+      await soon()
+      pace.hint(clock.now() + 30)
+      results = [fault('EAGAIN'), 4]
+      await clock.advance(30)
+      await soon()
+      assert.deepEqual([read.end, log.slice(3)], [null, ['read', 'readable']])
+      port.told[1](null)
+      await soon()
+      assert.equal(read.end, 4)
+    })
+
+    for (const [what, hint] of /** @type {[string, () => void][]} */ ([
+      ['it comes soon', () => pace.hint(clock.now() + 1.9)],
+      ['somebody asks', () => pace.hint(clock.now() + 30, { rest: 20, latest: clock.now() + 100 })]
+    ])) {
+      it(`not where ${what}`, async () => {
+        const port = await open()
+        reading(port)
+        await soon()
+        hint()
+        assert.deepEqual(log, ['readable'])
+      })
+    }
+
+    it('nor while a write waits, which would end with it', async () => {
+      const port = await open()
+      port.poller.writers = 1
+      const read = reading(port)
+      await soon()
+      pace.hint(clock.now() + 30)
+      assert.deepEqual(log, ['readable'])
+      port.poller.writers = 0
+      pace.hint(clock.now() + 30)
+      assert.deepEqual(log, ['readable', 'off readable 0', 'stop'])
+      results = [1]
+      await clock.advance(30)
+      await soon()
+      assert.equal(read.end, 1)
+    })
+
+    for (const error of [null, fault('EIO')]) {
+      it(`nor when it ${error ? 'has failed' : 'has come'}`, async () => {
+        const port = await open()
+        results = [1]
+        reading(port)
+        await soon()
+        port.told[0](error)
+        await soon()
+        pace.hint(clock.now() + 30)
+        assert.ok(!log.includes('stop'), log.join())
+      })
+    }
+
+    it('a hang-up is seen when it is over', async () => {
+      const port = await open()
+      const read = reading(port)
+      await soon()
+      pace.hint(clock.now() + 30)
+      results = [0]
+      await clock.advance(30)
+      await soon()
+      assert.equal(read.end.disconnect, true)
+    })
   })
 
   describe('where the first byte tells when the others can be there', () => {

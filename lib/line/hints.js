@@ -1,0 +1,81 @@
+'use strict'
+
+const { Awaited } = require('./awaited')
+const { Turnarounds } = require('./turnarounds')
+
+/** A timer may be so late (ms), and another one that was set for so much later must not come before it. */
+const SOON = 5
+
+/**
+ * Tells the transport when it is worth reading (`hint` of a transport): by the wire's time, what a station usually answers and how long it usually takes.
+ *
+ * @typedef {object} Job of the exchange
+ * @property {{ usual?: number, timeout: number }} step
+ * @property {any} station
+ * @property {number} need bytes that are needed at least
+ * @property {boolean} ours whether they are known to be the answer's
+ * @property {number | null} turnaround of the station, ms, where nobody is in a hurry and it is known
+ * @property {number} reads so many times bytes came
+ */
+class Hints {
+  #character
+  #echo
+  #link
+  #awaited
+  #turnarounds = new Turnarounds()
+
+  /**
+   * @param {{ times: { character: number, slack: number }, echo: { readonly expected: number },
+   *   link: { hint: (count: number, at: number, behind?: { rest: number, latest: number }) => void } }} line
+   */
+  constructor({ times, echo, link }) {
+    this.#character = times.character
+    this.#echo = echo
+    this.#link = link
+    this.#awaited = new Awaited(times)
+  }
+
+  /** The port was opened: others may be behind it. */
+  opened() {
+    this.#awaited.forget()
+    this.#turnarounds.forget()
+  }
+
+  /** @param {any} station @returns {number | null} ms; null: not known, or to be looked at again */
+  turnaroundOf(station) {
+    return this.#turnarounds.of(station)
+  }
+
+  #missing({ step, need, ours }, length) {
+    return (ours ? need : this.#awaited.bytes(step, need, this.#echo.expected)) - length
+  }
+
+  /** A query was sent. @param {Job} job @param {number} length of what has come by now, in bytes @param {number} sendEnd ms of the clock */
+  sent(job, length, sendEnd) {
+    const count = this.#missing(job, length)
+    if (count <= 0) return
+    // our own echo comes while we send
+    const echo = length === 0 ? this.#echo.expected : 0
+    const at = sendEnd + (count - echo) * this.#character
+    const latest = sendEnd + job.step.timeout
+    const whole = at + (job.turnaround ?? Infinity)
+    if (whole < latest - SOON) this.#link.hint(count, whole)
+    else this.#link.hint(count, at, { rest: (count - 1) * this.#character, latest })
+  }
+
+  /** A part of the answer came. @param {Job} job @param {number} length of what has come by now @param {number} lastByteAt ms of the clock */
+  more(job, length, lastByteAt) {
+    const count = this.#missing(job, length)
+    if (count > 0) this.#link.hint(count, lastByteAt + count * this.#character)
+  }
+
+  /** @param {Job} job @param {Buffer | null} answer null: it failed; empty: none was awaited @param {number} wait ms until its first byte */
+  ended(job, answer, wait) {
+    if (!answer?.length) return this.#awaited.forget()
+    this.#awaited.answered(answer, job.step)
+    // of an answer that was there when we looked it is not known since when
+    if (job.turnaround === null || job.reads > 1) this.#turnarounds.seen(job.station, wait)
+  }
+}
+
+module.exports = { Hints }

@@ -1,0 +1,78 @@
+'use strict'
+
+/** Timers count whole ms: what is nearer than one (ms) is waited for by the descriptor itself. */
+const LEAST = 1
+/** They fire so much (ms) later than asked for. */
+const LATE = 0.3
+/** To give up a wait that is under way is worth it for so much (ms). */
+const LONG = 2
+
+const ALL = { rest: 0, latest: -Infinity }
+
+/** When the next bytes can be there at the earliest; who sleeps until then can be woken. */
+class Pace {
+  #clock
+  #at = -Infinity
+  #behind = ALL
+  /** @type {(() => void) | null} */
+  #wake = null
+  /** @type {(() => void) | null} */
+  #giveUp = null
+
+  /** @param {import('../clock').Clock} clock */
+  constructor(clock) {
+    this.#clock = clock
+  }
+
+  /**
+   * @param {number} at ms of the clock
+   * @param {{ rest: number, latest: number }} [behind] see `hint` of a transport; without it nobody asks when the first byte comes
+   */
+  hint(at, behind = ALL) {
+    this.#at = at
+    this.#behind = behind
+    if (behind === ALL && at - this.#clock.now() >= LONG) this.#giveUp?.()
+  }
+
+  /** @param {(() => void) | null} giveUp ends the wait for the first byte, which is under way; null: it is over */
+  watch(giveUp) {
+    this.#giveUp = giveUp
+  }
+
+  /** The first byte has come. */
+  begun() {
+    const { rest, latest } = this.#behind
+    const at = this.#clock.now() + rest
+    if (at <= latest) this.#at = at
+    this.#behind = ALL
+  }
+
+  /** Something was read: what comes now is something else. */
+  done() {
+    this.#behind = ALL
+  }
+
+  /** @returns {Promise<void> | null} null: it is time */
+  sleep() {
+    // the nearest whole ms; timers are a little late, so rather the one before. Of what is still missing then the descriptor tells
+    const wait = Math.round(this.#at - this.#clock.now() - LATE)
+    if (!(wait >= LEAST)) return null
+    return new Promise(resolve => {
+      const wake = () => {
+        this.#wake = null
+        this.#clock.clearTimer(timer)
+        resolve()
+      }
+      const timer = this.#clock.setTimer(wake, wait)
+      this.#wake = wake
+    })
+  }
+
+  stop() {
+    this.#at = -Infinity
+    this.#behind = ALL
+    this.#wake?.()
+  }
+}
+
+module.exports = { Pace }

@@ -47,8 +47,8 @@ describe('who is in a hurry', () => {
   const watched = async use => {
     const clock = createVirtualClock()
     const hurried = /** @type {boolean[]} */ ([])
-    const told = (settings, clock) => {
-      const transport = simulated(settings, clock)
+    const told = (...given) => {
+      const transport = simulated(...given)
       return Object.assign(transport, { hint: (_count, _at, behind) => hurried.push(behind !== undefined) })
     }
     const { wire } = createNxLine({ clock, baudRate: 38400, turnaround: 5, quiet: true, stations: [1, 2] })

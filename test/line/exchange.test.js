@@ -400,22 +400,24 @@ describe('line: sending', () => {
 
 describe('line: one step, in a process that is late', () => {
   const STEP = { send: Buffer.from('query'), match: toy.answerTo(5, 0), timeout: 200 }
-  const start = (step = STEP) => {
+  const start = ({ step = STEP, gap = 0, character = 1, waiting = false, before = '' } = {}) => {
     const clock = createLateClock()
     const ended = []
     const link = {
+      name: 'mill',
       write: (_, done) => done(),
       hint: () => {},
-      waiting: () => false,
+      waiting: () => waiting,
       stray: () => {},
       skipped: () => {},
       echoed: () => {}
     }
-    const times = { character: 1, slack: 50, gap: 0 }
+    const times = { character, slack: 50, gap: 0 }
     const settings = { writeTimeout: 1000, jamTime: 1000 }
     const one = new Exchange({ clock, settings, times, echo: new Echo('off', clock.now), link })
     const done = (error, answer, facts) => ended.push([error?.code ?? answer.toString('hex'), facts])
-    one.start(step, { gap: 0, station: 5, sent: () => {}, done })
+    if (before) one.data(Buffer.from(before, 'hex'))
+    one.start(step, { gap, station: 5, sent: () => {}, done })
     return { clock, one, ended, hear: hex => one.data(Buffer.from(hex, 'hex')) }
   }
 
@@ -446,6 +448,34 @@ describe('line: one step, in a process that is late', () => {
     const [[answer, { rest, sent, ms, wait, due }]] = ended
     assert.deepEqual([answer, rest.toString('hex'), sent, ms, wait, due], [ANSWER, 'aabb', true, 305, 298, 205])
     assert.deepEqual([one.abort(), clock.due()], [null, []])
+  })
+
+  it('what an answer takes on the wire is not the time of the station', () => {
+    const { clock, ended, hear } = start({ character: 2 })
+    clock.wake(100)
+    hear(ANSWER)
+    const { ms, wait } = ended[0][1]
+    const bytes = ANSWER.length / 2
+    assert.deepEqual([ms, wait], [90, 90 - 2 * bytes])
+  })
+
+  it('one that never went out says so: after a second of bytes, not a moment earlier', () => {
+    const { clock, ended, hear } = start({ gap: 20, before: 'aa' })
+    for (let at = 10; at < 1000; at += 10) {
+      hear('aa')
+      clock.wake(at)
+    }
+    assert.deepEqual(ended, [])
+    hear('aa')
+    clock.wake(1000)
+    const [[code, { sent }]] = ended
+    assert.deepEqual([code, sent], ['LINE_JAMMED', false])
+  })
+
+  it('a line on which nothing comes is not jammed, however long its silence is not seen', () => {
+    const { clock, ended } = start({ gap: 20, waiting: true })
+    for (let at = 20; at <= 3000; at += 20) clock.wake(at)
+    assert.deepEqual(ended, [])
   })
 
   it('an answer that came faster than the wire: the station took no time', () => {

@@ -2126,6 +2126,7 @@ var nxlineSerialPlc = (() => {
           return remembered >= 0 ? (remembered + 1) % ids.length : first;
         };
         const free = (id) => {
+          if (resting.length === 0) return;
           const at = id === void 0 ? -1 : resting.indexOf(id);
           if (id === void 0) resting.length = 0;
           else if (at >= 0) resting.splice(at, 1);
@@ -2134,6 +2135,7 @@ var nxlineSerialPlc = (() => {
           /** @returns {number} the ID of the next query */
           take() {
             let next = following();
+            if (resting.length === 0) return memory.last = ids[next];
             let tries = ids.length;
             while (tries-- > 0 && resting.includes(ids[next])) next = (next + 1) % ids.length;
             const oldest = resting.find((id2) => ids.includes(id2));
@@ -2355,12 +2357,65 @@ var nxlineSerialPlc = (() => {
     }
   });
 
+  // lib/plan/mixed.js
+  var require_mixed2 = __commonJS({
+    "lib/plan/mixed.js"(exports, module) {
+      "use strict";
+      var LAST_MIXED = 16383;
+      var wordsOf = ({ start, end }) => ({ start: start >> 4, end: (end - 1 >> 4) + 1 });
+      var addAll = (addresses, { start, end }) => {
+        for (let address = start; address < end; address++) addresses.add(address);
+      };
+      var askedOf = (groups, isJoint) => {
+        const words = /* @__PURE__ */ new Set();
+        const bits = /* @__PURE__ */ new Set();
+        const single = [];
+        const seen = /* @__PURE__ */ new Set();
+        for (const group of groups) {
+          const span = group.kind === "word" ? group : wordsOf(group);
+          if (group.kind === "word") addAll(words, span);
+          else if (!isJoint(span)) addAll(bits, group);
+          else if (group.end - group.start > 1) addAll(words, span);
+          else {
+            single.push(group.start);
+            if (seen.has(span.start) || group.start > LAST_MIXED) words.add(span.start);
+            seen.add(span.start);
+          }
+        }
+        for (const bit of single) if (!words.has(bit >> 4)) bits.add(bit);
+        return { bits, words };
+      };
+      var canName = (addresses) => {
+        for (const address of addresses) if (address > LAST_MIXED) return false;
+        return true;
+      };
+      var sizeOf = ({ bits, words }) => ({ count: bits.size + words.size, answer: bits.size + 2 * words.size });
+      var fits = ({ bits, words }, most) => bits.size + words.size <= most && canName(bits) && canName(words);
+      var listOf = (kind, addresses) => Array.from(addresses).sort((a, b) => a - b).map((address) => ({ kind, address }));
+      var addressesOf = ({ bits, words }) => [...listOf("bit", bits), ...listOf("word", words)];
+      var BIT = { count: 1, answer: 1 };
+      var WORD = { count: 1, answer: 2 };
+      var shareOfOne = ({ space, start, groups }) => {
+        const [{ start: bit, end }] = groups;
+        const isSingle = groups.length === 1 && groups[0].kind === "bit" && end - bit === 1;
+        if (isSingle && bit <= LAST_MIXED) return BIT;
+        return space === "word" && start <= LAST_MIXED ? WORD : null;
+      };
+      var shareOf = (chunk, { most, isJoint }) => {
+        if (chunk.end - chunk.start === 1) return most > 0 ? shareOfOne(chunk) : null;
+        const asked = askedOf(chunk.groups, isJoint);
+        return fits(asked, most) ? sizeOf(asked) : null;
+      };
+      module.exports = { LAST_MIXED, addressesOf, askedOf, fits, shareOf, sizeOf, wordsOf };
+    }
+  });
+
   // lib/plan/model.js
   var require_model2 = __commonJS({
     "lib/plan/model.js"(exports, module) {
       "use strict";
+      var { addressesOf, askedOf, fits, shareOf, sizeOf, wordsOf } = require_mixed2();
       var FRAME_COST = 60;
-      var LAST_MIXED = 16383;
       var sortedSpans = (spans) => [...spans].sort((a, b) => a.start - b.start);
       var firstAbove = (sorted, value) => {
         let low = 0;
@@ -2377,7 +2432,6 @@ var nxlineSerialPlc = (() => {
         bounds: [...new Set(bounds)].map((bound) => bound * SIZE[kind]).sort((a, b) => a - b),
         holes: sortedSpans(holes.filter((hole) => hole.kind === kind))
       });
-      var wordsOf = ({ start, end }) => ({ start: start >> 4, end: (end - 1 >> 4) + 1 });
       var joined = (intervals) => {
         const all = [];
         for (const [from, to] of [...intervals].sort((a, b) => a[0] - b[0])) {
@@ -2387,35 +2441,19 @@ var nxlineSerialPlc = (() => {
         }
         return all;
       };
-      var addressesIn = ({ start, end }) => Array.from({ length: end - start }, (_, at) => start + at);
-      var mixedWords = (groups, isJoint) => {
-        const words = /* @__PURE__ */ new Set();
-        const single = /* @__PURE__ */ new Map();
+      var spanIn = (kind, group) => group.kind === kind ? group : wordsOf(group);
+      var extentOf = (kind, groups) => {
+        let start = Infinity;
+        let end = -Infinity;
         for (const group of groups) {
-          const span = group.kind === "word" ? group : wordsOf(group);
-          const whole = group.kind === "word" || group.end - group.start > 1 && isJoint(span);
-          if (whole) for (const word of addressesIn(span)) words.add(word);
-          else if (isJoint(span)) single.set(span.start, [...single.get(span.start) ?? [], group]);
+          const span = spanIn(kind, group);
+          start = Math.min(start, span.start);
+          end = Math.max(end, span.end);
         }
-        for (const [word, own] of single) if (own.length > 1 || own[0].start > LAST_MIXED) words.add(word);
-        return words;
-      };
-      var none = () => false;
-      var mixedAddresses = (groups, isJoint) => {
-        const [{ kind: only, start: first, end: last }] = groups;
-        if (groups.length === 1 && last - first === 1 && first <= LAST_MIXED)
-          return { addresses: [{ kind: only, address: first }], through: none };
-        const words = mixedWords(groups, isJoint);
-        const through = (group) => {
-          const span = wordsOf(group);
-          return group.kind === "bit" && isJoint(span) && addressesIn(span).every((word) => words.has(word));
-        };
-        const bits = new Set(groups.filter((group) => group.kind === "bit" && !through(group)).flatMap(addressesIn));
-        const list = (kind, addresses) => [...addresses].sort((a, b) => a - b).map((address) => ({ kind, address }));
-        return { addresses: [...list("bit", bits), ...list("word", words)], through };
+        return { kind, start, end };
       };
       var QUERY = 3;
-      var _limits, _rules, _joint, _Model_instances, sizeOf_fn, crosses_fn, priced_fn, block_fn, asWords_fn, asBits_fn, asMixed_fn, fits_fn;
+      var _limits, _rules, _joint, _Model_instances, sizeOf_fn, crosses_fn, prices_fn, bridges_fn, block_fn, asWords_fn, asBits_fn, asMixed_fn;
       var Model = class {
         /** @param {import('./reads').Limits} limits */
         constructor(limits) {
@@ -2424,7 +2462,10 @@ var nxlineSerialPlc = (() => {
           __privateAdd(this, _rules);
           __privateAdd(this, _joint);
           /** Whether these words and their bits are one memory. @param {{ start: number, end: number }} span */
-          __publicField(this, "isJoint", ({ start, end }) => __privateGet(this, _joint).some(([from, to]) => from <= start && end <= to));
+          __publicField(this, "isJoint", ({ start, end }) => {
+            for (const [from, to] of __privateGet(this, _joint)) if (from <= start && end <= to) return true;
+            return false;
+          });
           const { readBits, readWords, readMixed, info, again, frameCost = FRAME_COST } = limits;
           __privateSet(this, _limits, limits);
           __privateSet(this, _joint, joined(limits.joint ?? []));
@@ -2444,17 +2485,21 @@ var nxlineSerialPlc = (() => {
         mayBridge(kind, from, to) {
           if (from >= to) return true;
           if (__privateGet(this, _limits).bridge === false) return false;
-          return !__privateGet(this, _rules)[kind].holes.some(({ start, end }) => start < to && from < end);
+          for (const { start, end } of __privateGet(this, _rules)[kind].holes) if (start < to && from < end) return false;
+          return true;
         }
         /** The first border after an address: areas need not be one memory. @param {'bit'|'word'} kind @param {number} start */
         borderAfter(kind, start) {
           const { bounds } = __privateGet(this, _rules)[kind];
           return bounds[firstAbove(bounds, start)] ?? Infinity;
         }
-        /** What values take in a mixed request: addresses and bytes of the answer; null: it cannot hold them. @param {Group[]} groups */
-        mixedShare(groups) {
-          const { addresses } = mixedAddresses(groups, this.isJoint);
-          return __privateMethod(this, _Model_instances, fits_fn).call(this, addresses) ? { count: addresses.length, answer: answerOf(addresses) } : null;
+        /** What a block costs at first and repeated. @param {{ kind: 'bit'|'word', start: number, end: number }} block */
+        pricesOfBlock({ kind, start, end }) {
+          return __privateMethod(this, _Model_instances, prices_fn).call(this, QUERY, __privateMethod(this, _Model_instances, sizeOf_fn).call(this, kind, end - start));
+        }
+        /** What values take in a mixed request: addresses and bytes of the answer; null: it cannot hold them. @param {any} chunk */
+        mixedShare(chunk) {
+          return shareOf(chunk, { most: this.mostMixed, isJoint: this.isJoint });
         }
         /** All the ways to read these values with one request. @param {Group[]} groups @returns {Frame[]} */
         frames(groups) {
@@ -2479,48 +2524,57 @@ var nxlineSerialPlc = (() => {
         }
         return false;
       };
-      priced_fn = function(frame, query, answer) {
+      /** What a frame costs at first and repeated. @param {number} query bytes of INFO @param {number} answer the same */
+      prices_fn = function(query, answer) {
         const cost = this.frameCost + query + answer;
-        return { ...frame, cost, again: Math.min(cost, this.repeatCost + answer) };
+        return { cost, again: Math.min(cost, this.repeatCost + answer) };
       };
-      block_fn = function(kind, spans, groups) {
-        const sorted = sortedSpans(spans);
-        const { start } = sorted[0];
-        let { end } = sorted[0];
-        for (const span of sorted) {
-          if (!this.mayBridge(kind, end, span.start)) return null;
+      /** Whether all that lies between these values may be read with them. @param {{ start: number, end: number }[]} spans in order */
+      bridges_fn = function(kind, spans) {
+        let { end } = spans[0];
+        for (const span of spans) {
+          if (!this.mayBridge(kind, end, span.start)) return false;
           end = Math.max(end, span.end);
         }
-        if (end - start > this.most[kind] || __privateMethod(this, _Model_instances, crosses_fn).call(this, kind, { start, end }, spans)) return null;
+        return true;
+      };
+      block_fn = function(kind, groups) {
+        const span = extentOf(kind, groups);
+        if (span.end - span.start > this.most[kind]) return null;
+        const spans = sortedSpans(groups.map((group) => spanIn(kind, group)));
+        if (!__privateMethod(this, _Model_instances, bridges_fn).call(this, kind, spans) || __privateMethod(this, _Model_instances, crosses_fn).call(this, kind, span, spans)) return null;
         const through = (group) => group.kind !== kind;
-        const frame = { form: "block", span: { kind, start, end }, groups, through };
-        return __privateMethod(this, _Model_instances, priced_fn).call(this, frame, QUERY, __privateMethod(this, _Model_instances, sizeOf_fn).call(this, kind, end - start));
+        return { form: "block", span, groups, through, ...this.pricesOfBlock(span) };
       };
       asWords_fn = function(groups) {
-        const spans = groups.map((group) => group.kind === "word" ? group : wordsOf(group));
-        const possible = groups.every(({ kind }, at) => kind === "word" || this.isJoint(spans[at]));
-        return possible ? __privateMethod(this, _Model_instances, block_fn).call(this, "word", spans, groups) : null;
+        const possible = groups.every((group) => group.kind === "word" || this.isJoint(wordsOf(group)));
+        return possible ? __privateMethod(this, _Model_instances, block_fn).call(this, "word", groups) : null;
       };
       asBits_fn = function(groups) {
-        return groups.every(({ kind }) => kind === "bit") ? __privateMethod(this, _Model_instances, block_fn).call(this, "bit", groups, groups) : null;
+        return groups.every(({ kind }) => kind === "bit") ? __privateMethod(this, _Model_instances, block_fn).call(this, "bit", groups) : null;
       };
       asMixed_fn = function(groups) {
         if (this.mostMixed < 2) return null;
-        const { addresses, through } = mixedAddresses(groups, this.isJoint);
-        if (addresses.length < 2 || !__privateMethod(this, _Model_instances, fits_fn).call(this, addresses)) return null;
-        return __privateMethod(this, _Model_instances, priced_fn).call(this, { form: "mixed", addresses, groups, through }, 2 * addresses.length, answerOf(addresses));
+        const asked = askedOf(groups, this.isJoint);
+        const { count, answer } = sizeOf(asked);
+        if (count < 2 || !fits(asked, this.mostMixed)) return null;
+        const through = (group) => group.kind === "bit" && (group.end - group.start > 1 || asked.words.has(group.start >> 4)) && this.isJoint(wordsOf(group));
+        return { form: "mixed", addresses: addressesOf(asked), groups, through, ...__privateMethod(this, _Model_instances, prices_fn).call(this, 2 * count, answer) };
       };
-      fits_fn = function(addresses) {
-        return addresses.length <= this.mostMixed && addresses.every(({ address }) => address <= LAST_MIXED);
-      };
-      var answerOf = (addresses) => addresses.reduce((sum, { kind }) => sum + (kind === "word" ? 2 : 1), 0);
       var cycleCost = (frames) => {
-        const total = frames.reduce((sum, { cost }) => sum + cost, 0);
         if (frames.length === 1) return frames[0].again;
-        const saved = frames.map(({ cost, again }) => cost - again).sort((a, b) => b - a);
-        return total - ((saved[0] ?? 0) + (saved[1] ?? 0)) / 2;
+        let total = 0;
+        let most = 0;
+        let second = 0;
+        for (const { cost, again } of frames) {
+          const saved = cost - again;
+          total += cost;
+          if (saved > most) [most, second] = [saved, most];
+          else if (saved > second) second = saved;
+        }
+        return total - (most + second) / 2;
       };
-      module.exports = { LAST_MIXED, Model, cycleCost, wordsOf };
+      module.exports = { Model, cycleCost };
     }
   });
 
@@ -2623,16 +2677,27 @@ var nxlineSerialPlc = (() => {
     "lib/plan/blocks.js"(exports, module) {
       "use strict";
       var { PlcError } = require_error();
-      var order = (a, b) => a.start - b.start || a.end - b.end;
-      var groupsOf = (points) => {
-        const groups = /* @__PURE__ */ new Map();
-        for (const { kind, address, count, point } of points) {
-          const key = `${address} ${count}`;
-          const known = groups.get(key);
-          if (known) known.points.push(point);
-          else groups.set(key, { kind, start: address, end: address + count, points: [point] });
-        }
-        return [...groups.values()].sort(order);
+      var inOrder = (points, kind) => {
+        const size = points.length;
+        const keys = new Float64Array(size);
+        let count = 0;
+        for (let at = 0; at < size; at++) if (points[at].kind === kind) keys[count++] = points[at].address * size + at;
+        return keys.subarray(0, count).sort().map((key) => key % size);
+      };
+      var groupAmong = (groups, { kind, address, count = 1 }) => {
+        const end = address + count;
+        let at = groups.length;
+        while (at > 0 && groups[at - 1].start === address && groups[at - 1].end > end) at--;
+        const known = groups[at - 1];
+        if (known && known.start === address && known.end === end) return known;
+        const group = { kind, start: address, end, points: [] };
+        groups.splice(at, 0, group);
+        return group;
+      };
+      var groupsOf = (points, kind, pointAt = (at) => at) => {
+        const groups = [];
+        for (const at of inOrder(points, kind)) groupAmong(groups, points[at]).points.push(pointAt(at));
+        return groups;
       };
       var borders = (bounds) => {
         const sorted = [...new Set(bounds)].sort((a, b) => a - b);
@@ -2781,37 +2846,90 @@ var nxlineSerialPlc = (() => {
   var require_chunks = __commonJS({
     "lib/plan/chunks.js"(exports, module) {
       "use strict";
-      var { wordsOf } = require_model2();
-      var placed = (group, model) => {
-        const span = group.kind === "word" ? group : wordsOf(group);
-        const among = group.kind === "word" || model.isJoint(span);
-        const { start, end } = among ? span : group;
-        return { space: among ? "word" : "bit", start, end, group };
+      var { wordsOf } = require_mixed2();
+      var placesOf = (groups, model) => {
+        const places = { word: [], bit: [] };
+        for (const group of groups) {
+          const span = group.kind === "word" ? group : wordsOf(group);
+          const among = group.kind === "word" || model.isJoint(span);
+          const { start, end } = among ? span : group;
+          places[among ? "word" : "bit"].push({ start, end, group });
+        }
+        for (const own of [places.word, places.bit]) own.sort((a, b) => a.start - b.start || a.end - b.end);
+        return places;
       };
-      var bitsOf = (groups) => groups.every(({ kind }) => kind === "bit") ? { first: Math.min(...groups.map(({ start }) => start)), last: Math.max(...groups.map(({ end }) => end)) } : null;
+      var bitsOf = (groups) => {
+        let first = Infinity;
+        let last = -Infinity;
+        for (const { kind, start, end } of groups) {
+          if (kind === "word") return null;
+          first = Math.min(first, start);
+          last = Math.max(last, end);
+        }
+        return { first, last };
+      };
       var WORK = 5e5;
       var grainOf = (places, most) => {
         const span = places[places.length - 1].end - places[0].start;
         const reach = Math.min(places.length, most * places.length / span);
         return Math.min(most, Math.ceil(Math.sqrt(places.length * reach / WORK)));
       };
-      var chunksOf = (groups, model, space) => {
-        const places = groups.map((group) => placed(group, model)).filter((place) => place.space === space);
+      var chunksIn = (space, places, model) => {
         if (places.length === 0) return [];
-        places.sort((a, b) => a.start - b.start || a.end - b.end);
-        const grain = grainOf(places, model.most[space]);
-        const merged = [];
+        const longest = model.most[space];
+        const grain = grainOf(places, longest);
+        const chunks = [];
+        let last = null;
+        const mostAt = (start) => {
+          if (start < last.end) return longest;
+          return model.borderAfter(space, start - 1) === start ? 0 : grain;
+        };
         for (const { start, end, group } of places) {
-          const last = merged.at(-1);
-          const most = last && start < last.end ? model.most[space] : grain;
-          if (last && start <= last.end && Math.max(end, last.end) - last.start <= most) {
+          if (last && start <= last.end && Math.max(end, last.end) - last.start <= mostAt(start)) {
             last.end = Math.max(last.end, end);
             last.groups.push(group);
-          } else merged.push({ space, start, end, groups: [group] });
+          } else chunks.push(last = { space, start, end, groups: [group], bits: null, share: null });
         }
-        return merged.map((chunk) => ({ ...chunk, bits: bitsOf(chunk.groups), share: model.mixedShare(chunk.groups) }));
+        for (const chunk of chunks) {
+          chunk.bits = bitsOf(chunk.groups);
+          chunk.share = model.mixedShare(chunk);
+        }
+        return chunks;
+      };
+      var chunksOf = (groups, model) => {
+        const { word, bit } = placesOf(groups, model);
+        return [...chunksIn("word", word, model), ...chunksIn("bit", bit, model)];
       };
       module.exports = { chunksOf };
+    }
+  });
+
+  // lib/plan/pack.js
+  var require_pack = __commonJS({
+    "lib/plan/pack.js"(exports, module) {
+      "use strict";
+      var roomOf = (chunks, { shares }) => {
+        let room = 0;
+        for (const at of chunks) room += shares[at];
+        return room;
+      };
+      var pack = (mixed, { shares, answers }, most) => {
+        const plain = mixed.every((at) => shares[at] === 1);
+        const bins = [];
+        let open = 0;
+        for (const at of plain ? mixed : [...mixed].sort((a, b) => shares[b] - shares[a])) {
+          let index = open;
+          while (index < bins.length && bins[index].used + shares[at] > most) index++;
+          if (index === bins.length) bins.push({ used: 0, answer: 0, chunks: [] });
+          const bin = bins[index];
+          bin.used += shares[at];
+          bin.answer += answers[at];
+          bin.chunks.push(at);
+          while (open < bins.length && bins[open].used === most) open++;
+        }
+        return bins;
+      };
+      module.exports = { pack, roomOf };
     }
   });
 
@@ -2819,38 +2937,54 @@ var nxlineSerialPlc = (() => {
   var require_table = __commonJS({
     "lib/plan/table.js"(exports, module) {
       "use strict";
-      var costsFrom = (chunks, first, { model, costs }) => {
-        const { most } = model;
-        const { space, start, bits } = chunks[first];
+      var reachOf = (chunks, first, model) => {
+        const { space, start } = chunks[first];
         const border = model.borderAfter(space, start);
+        const most = model.most[space];
+        let end = start;
+        let at = first;
+        for (; at < chunks.length && chunks[at].space === space; at++) {
+          const chunk = chunks[at];
+          if (at > first && (!model.mayBridge(space, end, chunk.start) || chunk.end > Math.max(border, end))) break;
+          end = Math.max(end, chunk.end);
+          if (end - start > most) break;
+        }
+        return at;
+      };
+      var costsByLength = (model) => {
+        const costsOf = (kind) => Float64Array.from({ length: model.most[kind] + 1 }, (_, count) => model.blockCost(kind, count));
+        return { bit: costsOf("bit"), word: costsOf("word") };
+      };
+      var fillCosts = (chunks, { from, to }, { costs, place, byLength }) => {
+        const { space, start, bits } = chunks[from];
+        const own = byLength[space];
         let end = start;
         let onlyBits = bits !== null;
-        for (let at = first; at < chunks.length && chunks[at].space === space; at++) {
+        for (let at = from; at < to; at++) {
           const chunk = chunks[at];
-          const apart = at > first && (!model.mayBridge(space, end, chunk.start) || chunk.end > Math.max(border, end));
           end = Math.max(end, chunk.end);
-          if (apart || end - start > most[space]) return;
+          costs[place + at - from] = own[end - start];
           onlyBits && (onlyBits = chunk.bits !== null);
           const span = onlyBits ? chunk.bits.last - bits.first : Infinity;
-          const asBits = span <= most.bit ? model.blockCost("bit", span) : Infinity;
-          costs.push(Math.min(model.blockCost(space, end - start), asBits));
+          if (span < byLength.bit.length) costs[place + at - from] = Math.min(own[end - start], byLength.bit[span]);
         }
       };
       var chunkTable = (chunks, model) => {
-        const costs = [];
-        const first = new Int32Array(chunks.length + 1);
-        for (let at = 0; at < chunks.length; at++) {
-          costsFrom(chunks, at, { model, costs });
-          first[at + 1] = costs.length;
+        const count = chunks.length;
+        const first = new Int32Array(count + 1);
+        for (let at = 0; at < count; at++) first[at + 1] = first[at] + reachOf(chunks, at, model) - at;
+        const costs = new Float64Array(first[count]);
+        const byLength = costsByLength(model);
+        const shares = new Int32Array(count);
+        const answers = new Int32Array(count);
+        for (let at = 0; at < count; at++) {
+          const place = first[at];
+          fillCosts(chunks, { from: at, to: at + first[at + 1] - place }, { costs, place, byLength });
+          const { share } = chunks[at];
+          shares[at] = share ? share.count : 0;
+          answers[at] = share ? share.answer : 0;
         }
-        const numbers = (of) => Int32Array.from(chunks, ({ share }) => share ? of(share) : 0);
-        return {
-          count: chunks.length,
-          shares: numbers(({ count }) => count),
-          answers: numbers(({ answer }) => answer),
-          costs: Float64Array.from(costs),
-          first
-        };
+        return { count, shares, answers, costs, first };
       };
       module.exports = { chunkTable };
     }
@@ -2862,14 +2996,14 @@ var nxlineSerialPlc = (() => {
       "use strict";
       var { chunksOf } = require_chunks();
       var { cycleCost } = require_model2();
+      var { pack, roomOf } = require_pack();
       var { chunkTable } = require_table();
       var PRICES = [-2, -1.5, -1, -0.5, 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1, 1.5, 2, 3, 5, 8, 12, Infinity];
       var STEPS = 8;
       var WORK = 2e6;
       var MIXED = -1;
-      var choose = ({ count, shares, answers, costs, first }, price) => {
-        const best = new Float64Array(count + 1).fill(Infinity);
-        const from = new Int32Array(count + 1);
+      var choose = ({ count, shares, answers, costs, first }, price, { best, from }) => {
+        best.fill(Infinity);
         best[0] = 0;
         for (let at = 0; at < count; at++) {
           const here = best[at];
@@ -2900,72 +3034,56 @@ var nxlineSerialPlc = (() => {
         }
         return { mixed, blocks };
       };
-      var roomOf = (mixed, { shares }) => mixed.reduce((total, at) => total + shares[at], 0);
-      var pack = (mixed, { shares }, most) => {
-        const plain = mixed.every((at) => shares[at] === 1);
-        const bins = [];
-        let open = 0;
-        for (const at of plain ? mixed : [...mixed].sort((a, b) => shares[b] - shares[a])) {
-          let bin;
-          for (let index = open; index < bins.length && !bin; index++) {
-            if (bins[index].used + shares[at] <= most) bin = bins[index];
-          }
-          if (!bin) bins.push(bin = { used: 0, chunks: [] });
-          bin.used += shares[at];
-          bin.chunks.push(at);
-          while (open < bins.length && bins[open].used === most) open++;
+      var gainOf = (block, { shares, answers }) => {
+        let count = 0;
+        let gain = block.cost;
+        for (let at = block.from; at < block.to && gain > 0; at++) {
+          count += shares[at];
+          gain = shares[at] === 0 ? 0 : gain - answers[at] - 2 * shares[at];
         }
-        return bins.map(({ chunks }) => chunks);
+        return { block, count, gain };
       };
       var range = (from, to) => Array.from({ length: to - from }, (_, at) => from + at);
       var fill = ({ mixed, blocks }, table, most) => {
-        let room = pack(mixed, table, most).length * most - roomOf(mixed, table);
-        if (room === 0) return { mixed, blocks };
-        const { shares, answers } = table;
-        const gaining = [];
-        for (const block of blocks) {
-          let count = 0;
-          let gain = block.cost;
-          for (let at = block.from; at < block.to && gain > 0; at++) {
-            count += shares[at];
-            gain = shares[at] === 0 ? 0 : gain - answers[at] - 2 * shares[at];
-          }
-          if (gain > 0 && count <= room) gaining.push({ block, gain, count });
-        }
+        const bins = pack(mixed, table, most);
+        let room = bins.length * most - roomOf(mixed, table);
+        if (room === 0) return { mixed, blocks, bins };
+        const gaining = blocks.map((block) => gainOf(block, table)).filter(({ gain, count }) => gain > 0 && count <= room);
         const moved = /* @__PURE__ */ new Set();
         for (const { block, count } of gaining.sort((a, b) => b.gain / b.count - a.gain / a.count)) {
           if (count > room) continue;
           room -= count;
           moved.add(block);
         }
-        const more = [...moved].flatMap(({ from, to }) => range(from, to));
-        return { mixed: [...mixed, ...more], blocks: blocks.filter((block) => !moved.has(block)) };
+        if (moved.size === 0) return { mixed, blocks, bins };
+        const all = [...mixed, ...[...moved].flatMap(({ from, to }) => range(from, to))];
+        return { mixed: all, blocks: blocks.filter((block) => !moved.has(block)), bins: pack(all, table, most) };
       };
-      var priced = (chosen, table, model) => {
-        const { mixed, blocks } = fill(chosen, table, model.mostMixed);
-        const { frameCost, repeatCost, queryOfBlock } = model;
-        const sets = blocks.map(({ from, to, cost }) => {
-          const again = Math.min(cost, cost - frameCost - queryOfBlock + repeatCost);
-          return { chunks: range(from, to), cost, again };
-        });
-        for (const chunks of pack(mixed, table, model.mostMixed)) {
-          const answer = chunks.reduce((total, at) => total + table.answers[at], 0);
-          const cost = frameCost + 2 * roomOf(chunks, table) + answer;
-          sets.push({ chunks, cost, again: Math.min(cost, repeatCost + answer) });
+      var pricesOf = ({ blocks, bins }, { frameCost, repeatCost, queryOfBlock }) => {
+        const prices = blocks.map(({ cost }) => ({
+          cost,
+          again: Math.min(cost, cost - frameCost - queryOfBlock + repeatCost)
+        }));
+        for (const { used, answer } of bins) {
+          const cost = frameCost + 2 * used + answer;
+          prices.push({ cost, again: Math.min(cost, repeatCost + answer) });
         }
-        return sets;
+        return prices;
       };
       var createSearch = (table, model) => {
-        const best = { sets: [], cost: Infinity, room: 0 };
+        const best = { blocks: [], bins: [], cost: Infinity, room: 0 };
+        const notes = { best: new Float64Array(table.count + 1), from: new Int32Array(table.count + 1) };
         return {
           best,
           /** @returns {number} addresses that go into mixed requests at this price */
           attempt: (price) => {
-            const chosen = trace(table, choose(table, price));
+            const from = choose(table, price, notes);
+            if (notes.best[table.count] === Infinity) return 0;
+            const chosen = trace(table, from);
             const room = roomOf(chosen.mixed, table);
-            const sets = priced(chosen, table, model);
-            const cost = cycleCost(sets);
-            if (cost < best.cost) Object.assign(best, { sets, cost, room });
+            const { blocks, bins } = fill(chosen, table, model.mostMixed);
+            const cost = cycleCost(pricesOf({ blocks, bins }, model));
+            if (cost < best.cost) Object.assign(best, { blocks, bins, cost, room });
             return room;
           }
         };
@@ -2989,18 +3107,27 @@ var nxlineSerialPlc = (() => {
         for (const requests of around) if (requests > 0) bisect(search, requests * mostMixed);
       };
       var cheapest = (frames, key) => frames.reduce((best, frame) => frame[key] < best[key] ? frame : best);
-      var framesOf = (sets, model, key) => sets.flatMap((groups) => {
-        const frames = model.frames(groups.flat());
-        if (frames.length > 0) return [cheapest(frames, key)];
-        return groups.map((own) => cheapest(model.frames(own), key));
+      var groupsIn = (chunks) => {
+        const all = [];
+        for (const { groups } of chunks) for (const group of groups) all.push(group);
+        return all;
+      };
+      var formsOf = (sets, model) => sets.flatMap((chunks) => {
+        const forms = model.frames(groupsIn(chunks));
+        return forms.length > 0 ? [forms] : chunks.map(({ groups }) => model.frames(groups));
       });
       var pricedPlan = (groups, model) => {
-        const chunks = [...chunksOf(groups, model, "word"), ...chunksOf(groups, model, "bit")];
+        const chunks = chunksOf(groups, model);
         const table = chunkTable(chunks, model);
         const search = createSearch(table, model);
         explore(search, { steps: table.costs.length + table.count, mostMixed: model.mostMixed });
-        const sets = search.best.sets.map((set) => set.chunks.map((at) => chunks[at].groups));
-        const plans = (model.repeats ? ["cost", "again"] : ["cost"]).map((key) => framesOf(sets, model, key));
+        const { blocks, bins } = search.best;
+        const sets = [
+          ...blocks.map(({ from, to }) => chunks.slice(from, to)),
+          ...bins.map((bin) => bin.chunks.map((at) => chunks[at]))
+        ];
+        const forms = formsOf(sets, model);
+        const plans = (model.repeats ? ["cost", "again"] : ["cost"]).map((key) => forms.map((each) => cheapest(each, key)));
         return plans.reduce((best, plan) => cycleCost(plan) < cycleCost(best) ? plan : best);
       };
       module.exports = { pricedPlan };
@@ -3015,14 +3142,21 @@ var nxlineSerialPlc = (() => {
       var { blocksOf, groupsOf } = require_blocks();
       var { MOST_EXACT, exactPlan } = require_exact();
       var { merged } = require_merge();
-      var { LAST_MIXED, Model, cycleCost } = require_model2();
+      var { LAST_MIXED } = require_mixed2();
+      var { Model, cycleCost } = require_model2();
       var { pricedPlan } = require_priced();
       var MOST_GROUPS_MERGED = 300;
-      var servedBy = ({ groups, through }, placeOf) => groups.flatMap((group) => {
-        const { kind, start, end } = group;
-        const place = through(group) ? { at: placeOf("word", start >> 4), bit: start & 15 } : { at: placeOf(kind, start) };
-        return group.points.map((point) => ({ point, ...place, count: end - start }));
-      });
+      var servedBy = ({ groups, through }, placeOf) => {
+        const served = [];
+        for (const group of groups) {
+          const { kind, start, end, points } = group;
+          const count = end - start;
+          const isThrough = through(group);
+          const at = isThrough ? placeOf("word", start >> 4) : placeOf(kind, start);
+          for (const point of points) served.push(isThrough ? { point, at, bit: start & 15, count } : { point, at, count });
+        }
+        return served;
+      };
       var shapeOf = ({ form, span, addresses }) => {
         if (form === "mixed") return { ask: "readMixed", addresses };
         const { kind, start, end } = span;
@@ -3030,8 +3164,9 @@ var nxlineSerialPlc = (() => {
       };
       var placesOf = ({ form, span, addresses }) => {
         if (form === "block") return (_kind, address) => address - span.start;
-        const places = new Map(addresses.map(({ kind, address }, at) => [kind + address, at]));
-        return (kind, address) => places.get(kind + address);
+        const places = { bit: /* @__PURE__ */ new Map(), word: /* @__PURE__ */ new Map() };
+        addresses.forEach(({ kind, address }, at) => places[kind].set(address, at));
+        return (kind, address) => places[kind].get(address);
       };
       var requestOf = (frame) => {
         const { cost, again } = frame;
@@ -3040,9 +3175,6 @@ var nxlineSerialPlc = (() => {
           { ...shapeOf(frame), points: servedBy(frame, placesOf(frame)), cost, again }
         );
       };
-      var groupsOfKind = (points, kind) => groupsOf(
-        points.map(({ kind: each, address, count = 1 }, point) => ({ kind: each, address, count, point })).filter((point) => point.kind === kind)
-      );
       var checkGroups = (groups, model) => {
         for (const group of groups) {
           const { kind, start, end } = group;
@@ -3050,17 +3182,16 @@ var nxlineSerialPlc = (() => {
           throw new PlcError("FRAME_TOO_LONG", { what: `one value of ${kind}s`, got: end - start, most: model.most[kind] });
         }
       };
-      var plainPlan = (groups, model, bounds = []) => (
+      var plainBlocks = (groups, model, bounds = []) => (
         /** @type {const} */
         ["word", "bit"].flatMap((kind) => {
           const own = groups.filter((group) => group.kind === kind);
           const most = model.most[kind];
           if (own.some(({ start, end }) => end - start > most)) return [];
-          const blocks = blocksOf(own, { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
-          return blocks.map((block) => model.frames(block.groups)[0]);
+          return blocksOf(own, { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
         })
       );
-      var servesAll = (frames, groups) => frames.reduce((sum, frame) => sum + frame.groups.length, 0) === groups.length;
+      var servesAll = (parts, groups) => parts.reduce((sum, part) => sum + part.groups.length, 0) === groups.length;
       var RANK = { word: 0, bit: 1, mixed: 2 };
       var rankOf = ({ form, span }) => RANK[form === "mixed" ? form : span.kind];
       var startOf = ({ form, span, addresses }) => form === "mixed" ? addresses[0].address : span.start;
@@ -3071,14 +3202,14 @@ var nxlineSerialPlc = (() => {
       };
       var bestPlan = (groups, model, limits) => {
         if (groups.length <= MOST_EXACT) return exactPlan(groups, model);
-        const found = pricedPlan(groups, model);
-        const plain = plainPlan(groups, model, limits.bounds);
-        const plans = servesAll(plain, groups) ? [plain] : [];
-        plans.push(groups.length <= MOST_GROUPS_MERGED ? merged(found, model) : found);
-        return plans.reduce((best, plan) => cycleCost(plan) < cycleCost(best) ? plan : best);
+        const priced = pricedPlan(groups, model);
+        const found = groups.length <= MOST_GROUPS_MERGED ? merged(priced, model) : priced;
+        const plain = plainBlocks(groups, model, limits.bounds);
+        const isPlain = servesAll(plain, groups) && cycleCost(plain.map((block) => model.pricesOfBlock(block))) <= cycleCost(found);
+        return isPlain ? plain.map((block) => model.frames(block.groups)[0]) : found;
       };
       var planReads = (points, limits) => {
-        const groups = [...groupsOfKind(points, "word"), ...groupsOfKind(points, "bit")];
+        const groups = [...groupsOf(points, "word"), ...groupsOf(points, "bit")];
         if (groups.length === 0) return [];
         const model = new Model(limits);
         checkGroups(groups, model);
@@ -3188,8 +3319,9 @@ var nxlineSerialPlc = (() => {
       var blocksFor = (points, kind, limits) => {
         const { writeBits, writeWords, info, bounds = [] } = limits;
         const most = kind === "bit" ? Math.min(writeBits, info - 2) : Math.min(writeWords, info - 2 >> 1);
-        const chosen = points.filter((point) => point.kind === kind).map((point) => ({ ...point, count: point.values.length }));
-        return blocksOf(groupsOf(chosen), { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
+        const places = points.map(({ kind: own, address, values }) => ({ kind: own, address, count: values.length }));
+        const groups = groupsOf(places, kind, (at) => points[at].point);
+        return blocksOf(groups, { most, bounds: kind === "bit" ? bounds.map((bound) => bound * 16) : bounds });
       };
       var items = ({ start, end }) => end - start;
       var pointsOf = (parts) => parts.flatMap((part) => part.groups.flatMap((group) => group.points)).sort((a, b) => a - b);

@@ -72,7 +72,7 @@ function listAnswers(row, infoLength, { steps, phase, nonStandardAck }) {
  */
 function readAnswer(frame, query, options = {}) {
   const { fn, info, from } = frame
-  const found = classify(fn, info, expectedAnswers(query, options))
+  const found = classify({ fn, first: info[0], length: info.length }, expectedAnswers(query, options))
   const station = options.station ?? from
   if (!found) throw new PlcError('BAD_ANSWER', { station, reason: `function ${hex(fn)} with ${info.length} bytes` })
   if (found.kind === 'error') throw plcError(info[0], { station, query })
@@ -84,17 +84,16 @@ function readAnswer(frame, query, options = {}) {
 
 /**
  * Which expected answer a frame is: a short one whose INFO fits before the awaited values, so that `A1 01 02` is error 2 and no bit.
- * @param {number} fn
- * @param {Uint8Array} info
+ * @param {{ fn: number, first: number, length: number }} frame the first byte of INFO, and how many there are
  * @param {Expected[]} expected
  * @returns {Expected | undefined}
  */
-function classify(fn, info, expected) {
+function classify({ fn, first, length }, expected) {
   let values
   for (const each of expected) {
-    if (each.fn !== fn || each.length !== info.length) continue
+    if (each.fn !== fn || each.length !== length) continue
     if (each.accepts === any) values = each
-    else if (each.accepts(info[0])) return each
+    else if (each.accepts(first)) return each
   }
   return values
 }

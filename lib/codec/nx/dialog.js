@@ -6,7 +6,7 @@ const { functionOf } = require('./functions')
 const { DEFAULT_IDS, masterIds } = require('./ids')
 const { check, LIMITS } = require('./limits')
 const { answerTo } = require('./match')
-const { encodeQuery, encodeResponseRequest } = require('./query')
+const { encodeResponseRequest, queryBytes } = require('./query')
 
 /**
  * Conversations as generators; contract in docs/architecture.md, manual "Communication steps".
@@ -40,6 +40,8 @@ const GAP = 10
 const LEAST_GAP_BEFORE_REQUEST = 5
 const GLOBAL_STATION = 255
 const LAST_STATION = 191
+/** @type {number[]} */
+const NONE = []
 
 /** Nothing of use came: asking again can help. */
 const LOST = new Set(['TIMEOUT', 'INCOMPLETE', 'CRC_ERROR', 'BAD_ANSWER'])
@@ -58,11 +60,11 @@ function* readDialog(query, options) {
   if (!functionOf(query.ask).repeatable) throw new PlcError('FUNCTION_REFUSED', { function: `${query.ask} as a read` })
   const { facts } = talk
   const values = options.again === undefined ? null : yield* repeat(talk, options.again)
-  if (values) return { values, ...facts }
+  if (values) return resultOf(values, facts)
   const most = facts.attempts + talk.attempts
   for (;;) {
     try {
-      return { values: yield* ask(talk, most), ...facts }
+      return resultOf(yield* ask(talk, most), facts)
     } catch (/** @type {any} */ error) {
       const again = LOST.has(error.code) || error.code === 'PLC_NOT_PERFORMED'
       if (!again || facts.attempts >= most) throw error
@@ -82,7 +84,7 @@ function* writeDialog(query, options) {
   const talk = prepare(query, options)
   if (functionOf(query.ask).repeatable) throw new PlcError('FUNCTION_REFUSED', { function: `${query.ask} as a write` })
   try {
-    return { values: yield* ask(talk, 0), ...talk.facts }
+    return resultOf(yield* ask(talk, 0), talk.facts)
   } catch (/** @type {any} */ error) {
     const neverOut = talk.reached === 'nothing' || (talk.reached === 'query' && error.details?.sent === false)
     if (isRefusal(error) || neverOut) throw error
@@ -96,6 +98,16 @@ function* writeDialog(query, options) {
   }
 }
 
+/** Written out: there may be dozens of them each second. @param {any} values @param {Facts} facts @returns {any} */
+const resultOf = (values, { attempts, nonStandard, repeated, master, seenStation }) => ({
+  values,
+  attempts,
+  nonStandard,
+  repeated,
+  master,
+  seenStation
+})
+
 const isRefusal = error => typeof error?.code === 'string' && error.code.startsWith('PLC_')
 
 function prepare(query, options) {
@@ -104,9 +116,7 @@ function prepare(query, options) {
     throw new PlcError('BAD_STATION', { station, reason: 'it must be 0 to 191, or 255 for the only PLC of the line' })
   }
   check(query, limits)
-  const facts = Object.assign(options.facts ?? {}, { attempts: 0, nonStandard: false, repeated: false })
-  delete facts.master
-  delete facts.seenStation
+  const facts = begun(options.facts ?? {})
   const ids = options.ids ?? masterIds({ ids: DEFAULT_IDS })
   const reached = /** @type {'nothing'|'query'|'answer'} */ ('nothing')
   return {
@@ -124,6 +134,15 @@ function prepare(query, options) {
   }
 }
 
+/** @returns {Facts} the same object, as nothing has been sent yet */
+function begun(facts) {
+  facts.attempts = 0
+  facts.nonStandard = false
+  facts.repeated = false
+  for (const key of ['master', 'seenStation']) if (key in facts) delete facts[key]
+  return facts
+}
+
 /** One Q with all that follows it; `most` attempts bound the RRs. */
 function* ask(talk, most) {
   const { ids, facts, steps } = talk
@@ -131,7 +150,7 @@ function* ask(talk, most) {
   let finished = false
   try {
     facts.attempts++
-    let answer = yield* exchange(talk, master, 'query')
+    let answer = taken(talk, 'query', yield stepOf(talk, 'query', master))
     if (steps === 4) answer = yield* request(talk, master, most)
     finished = true
     return answer.values
@@ -148,7 +167,7 @@ function* ask(talk, most) {
 function* request(talk, master, most) {
   for (;;) {
     try {
-      return yield* exchange(talk, master, 'request')
+      return taken(talk, 'request', yield stepOf(talk, 'request', master))
     } catch (/** @type {any} */ error) {
       if (!LOST.has(error.code) || talk.facts.attempts >= most) throw error
       talk.facts.attempts++
@@ -163,7 +182,7 @@ function* repeat(talk, master) {
   let finished = false
   try {
     facts.attempts++
-    const { values } = yield* exchange(talk, master, 'request')
+    const { values } = taken(talk, 'request', yield stepOf(talk, 'request', master))
     finished = true
     facts.repeated = true
     return values
@@ -185,18 +204,23 @@ function newId({ ids, station, facts }) {
   return master
 }
 
-/** One step: bytes out, the answer in. */
-function* exchange(talk, master, phase) {
-  const { query, station, steps, timeout, limits, nonStandardAck, facts, ids } = talk
-  const ends = { station, master, steps }
-  const send = phase === 'query' ? encodeQuery(query, { ...ends, limits }) : encodeResponseRequest(ends)
+/** Bytes that go out, and what is awaited. */
+function stepOf(talk, phase, master) {
+  const { query, station, steps, timeout, nonStandardAck, facts } = talk
+  const send = phase === 'query' ? queryBytes(query, talk, master) : encodeResponseRequest({ station, master })
   const gap = phase === 'query' ? talk.gap : Math.max(talk.gap, LEAST_GAP_BEFORE_REQUEST)
-  const late = (ids.resting?.() ?? []).filter(id => id !== master)
+  const late = othersOf(talk.ids.resting?.() ?? NONE, master)
   const { seenStation } = facts
-  const match = answerTo(query, { ...ends, phase, nonStandardAck, seenStation, sent: send, late })
+  const match = answerTo(query, { station, master, steps, phase, nonStandardAck, seenStation, sent: send, late })
   if (talk.reached === 'nothing') talk.reached = 'query'
-  const usual = answerLength(query, { steps, phase })
-  const bytes = yield { send, match, timeout, gap, usual }
+  return { send, match, timeout, gap, usual: answerLength(query, { steps, phase }) }
+}
+
+const othersOf = (resting, master) => (resting.length === 0 ? resting : resting.filter(id => id !== master))
+
+/** The answer to a step. */
+function taken(talk, phase, bytes) {
+  const { query, station, steps, nonStandardAck, facts } = talk
   talk.reached = 'answer'
   const frame = openFrame(bytes)
   facts.seenStation = frame.from

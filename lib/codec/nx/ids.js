@@ -71,6 +71,7 @@ function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
     return remembered >= 0 ? (remembered + 1) % ids.length : first
   }
   const free = id => {
+    if (resting.length === 0) return
     const at = id === undefined ? -1 : resting.indexOf(id)
     if (id === undefined) resting.length = 0
     else if (at >= 0) resting.splice(at, 1)
@@ -79,6 +80,7 @@ function masterIds({ ids = DEFAULT_IDS, start = 0, memory = {} } = {}) {
     /** @returns {number} the ID of the next query */
     take() {
       let next = following()
+      if (resting.length === 0) return (memory.last = ids[next])
       let tries = ids.length
       while (tries-- > 0 && resting.includes(ids[next])) next = (next + 1) % ids.length
       const oldest = resting.find(id => ids.includes(id))

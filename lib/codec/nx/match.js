@@ -11,6 +11,8 @@ const { crcFits, HEADER, MOST_INFO, OVERHEAD, SHORTEST } = require('./frame')
 
 const GLOBAL_STATION = 255
 const LAST_STATION = 191
+/** @type {readonly number[]} */
+const NONE = []
 
 /**
  * Recognises the answer to a query among the bytes received. Only the exact header is looked for (receiver, sender, function and length), and
@@ -29,32 +31,48 @@ const LAST_STATION = 191
  * @returns {(bytes: Uint8Array) => Verdict}
  */
 function answerTo(query, options) {
-  const { station, master, seenStation, sent, late = [] } = options
-  const expected = expectedAnswers(query, options)
-  const isFunction = fn => expected.some(each => each.fn === fn)
-  const isHeader = (fn, length) => expected.some(each => each.fn === fn && (each.length & 0xff) === length)
-  const isStation = id =>
-    station === GLOBAL_STATION && seenStation === undefined
-      ? id === GLOBAL_STATION || id <= LAST_STATION
-      : id === station || id === seenStation
-
-  /** @returns {Candidate} */
-  const look = (bytes, at) => {
-    const left = bytes.length - at
-    if (bytes[at] === master) {
-      if (left > 1 && !isStation(bytes[at + 1])) return 'nothing'
-      if (left > 2 && !isFunction(bytes[at + 2])) return 'nothing'
-      if (left < HEADER) return 'begins'
-      return isHeader(bytes[at + 2], bytes[at + 3]) ? 'ours' : 'nothing'
-    }
-    if (sent && startsLike(bytes, at, sent)) return left < HEADER ? 'begins' : 'other'
-    return late.includes(bytes[at]) ? lookLate(bytes, at, isStation) : 'nothing'
-  }
-  const accepts = (bytes, at, length) =>
-    classify(bytes[at + 2], bytes.subarray(at + HEADER, at + length - 2), expected) !== undefined
-
-  return bytes => judge(bytes, look, accepts)
+  const { station, master, seenStation, sent, late = NONE } = options
+  const own = { station, master, seenStation, sent, late, expected: expectedAnswers(query, options) }
+  return bytes => judge(bytes, own)
 }
+
+/**
+ * What is looked for.
+ * @typedef {{ station: number, master: number, seenStation?: number, sent?: Uint8Array, late: readonly number[],
+ *   expected: import('./answer').Expected[] }} Own
+ */
+
+/** @param {Uint8Array} bytes @param {number} at @param {Own} own @returns {Candidate} */
+function look(bytes, at, own) {
+  const left = bytes.length - at
+  if (bytes[at] === own.master) {
+    if (left > 1 && !isStation(bytes[at + 1], own)) return 'nothing'
+    if (left > 2 && !isFunction(bytes[at + 2], own)) return 'nothing'
+    if (left < HEADER) return 'begins'
+    return isHeader(bytes[at + 2], bytes[at + 3], own) ? 'ours' : 'nothing'
+  }
+  if (own.sent && startsLike(bytes, at, own.sent)) return left < HEADER ? 'begins' : 'other'
+  return own.late.includes(bytes[at]) ? lookLate(bytes, at, own) : 'nothing'
+}
+
+/** @param {number} id @param {Own} own */
+const isStation = (id, { station, seenStation }) =>
+  station === GLOBAL_STATION && seenStation === undefined
+    ? id === GLOBAL_STATION || id <= LAST_STATION
+    : id === station || id === seenStation
+
+function isFunction(fn, { expected }) {
+  for (const each of expected) if (each.fn === fn) return true
+  return false
+}
+
+function isHeader(fn, length, { expected }) {
+  for (const each of expected) if (each.fn === fn && (each.length & 0xff) === length) return true
+  return false
+}
+
+const accepts = (bytes, at, { length, own }) =>
+  classify({ fn: bytes[at + 2], first: bytes[at + HEADER], length: length - OVERHEAD }, own.expected) !== undefined
 
 const lengthAt = (bytes, at) => (bytes[at + 3] || MOST_INFO) + OVERHEAD
 
@@ -67,41 +85,37 @@ function startsLike(bytes, at, sent) {
 const LATE_READS = [0x81, 0x83, 0x85, 0xa1, 0xa3, 0xa5]
 
 /** @returns {Candidate} */
-function lookLate(bytes, at, isStation) {
+function lookLate(bytes, at, own) {
   const left = bytes.length - at
-  if (left > 1 && !isStation(bytes[at + 1])) return 'nothing'
+  if (left > 1 && !isStation(bytes[at + 1], own)) return 'nothing'
   if (left > 2 && !LATE_READS.includes(bytes[at + 2])) return 'nothing'
   return left < HEADER ? 'begins' : 'other'
 }
 
-/**
- * @param {Uint8Array} bytes
- * @param {(bytes: Uint8Array, at: number) => Candidate} look
- * @param {(bytes: Uint8Array, at: number, length: number) => boolean} accepts
- * @returns {Verdict}
- */
-function judge(bytes, look, accepts) {
+/** @param {Uint8Array} bytes @param {Own} own @returns {Verdict} */
+function judge(bytes, own) {
   let at = 0
   /** @type {Candidate} */
   let candidate = 'nothing'
-  while (at < bytes.length && (candidate = look(bytes, at)) === 'nothing') at++
+  while (at < bytes.length && (candidate = look(bytes, at, own)) === 'nothing') at++
   if (at > 0) return { skip: at }
   if (bytes.length === 0 || candidate === 'begins') return { need: SHORTEST }
   const length = lengthAt(bytes, 0)
   if (bytes.length < length) return { need: length, ours: candidate === 'ours' }
   if (candidate === 'other') return { skip: length }
-  if (!crcFits(bytes, 0, length)) return afterDamage(bytes, length, { look, accepts })
-  return accepts(bytes, 0, length) ? { take: length } : { skip: length }
+  if (!crcFits(bytes, 0, length)) return afterDamage(bytes, length, own)
+  return accepts(bytes, 0, { length, own }) ? { take: length } : { skip: length }
 }
 
 // What looked like the answer is damaged. It may have been noise before the real one, so later candidates are tried; but an error frame that
 // lies wholly inside is part of the damaged data.
-function afterDamage(bytes, length, { look, accepts }) {
+function afterDamage(bytes, length, own) {
   for (let at = 1; at < bytes.length; at++) {
-    if (look(bytes, at) !== 'ours') continue
+    if (look(bytes, at, own) !== 'ours') continue
     const end = at + lengthAt(bytes, at)
     if (end > bytes.length) return { need: end, ours: true }
-    if (end > length && crcFits(bytes, at, end - at) && accepts(bytes, at, end - at)) return { skip: at }
+    if (end > length && crcFits(bytes, at, end - at) && accepts(bytes, at, { length: end - at, own }))
+      return { skip: at }
   }
   return { bad: 'CRC', length }
 }

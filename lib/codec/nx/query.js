@@ -49,6 +49,29 @@ function encodeQuery(query, { station, master, steps = 2, limits = LIMITS }) {
   return encodeFrame({ to: station, from: master, fn: queryCode(row, steps), info: INFO[row.name](query) })
 }
 
+/** @type {WeakMap<Query, { station: number, steps: number, limits: any, frames: Map<number, Buffer> }>} */
+const made = new WeakMap()
+
+/**
+ * The same as {@link encodeQuery}; a read that comes again and again is encoded once for each ID. Neither the query nor the bytes may be changed.
+ * @param {Query} query
+ * @param {{ station: number, steps: 2|4, limits: Record<string, number> }} ends
+ * @param {number} master
+ * @returns {Buffer}
+ * @throws {PlcError} as encodeQuery
+ */
+function queryBytes(query, { station, steps, limits }, master) {
+  if (!functionOf(query.ask).repeatable) return encodeQuery(query, { station, master, steps, limits })
+  let known = made.get(query)
+  if (known?.station !== station || known.steps !== steps || known.limits !== limits) {
+    known = { station, steps, limits, frames: new Map() }
+    made.set(query, known)
+  }
+  let bytes = known.frames.get(master)
+  if (!bytes) known.frames.set(master, (bytes = encodeQuery(query, { station, master, steps, limits })))
+  return bytes
+}
+
 /**
  * The bytes of an RR: asks for the R of a 4-step query, or makes the PLC carry its last query out again.
  * @param {Ends} ends
@@ -144,23 +167,34 @@ function answerInfoLength(query) {
  * @throws {PlcError} BAD_ANSWER a bit neither FF nor 00, an acknowledgement not 00
  */
 function decodeValues(query, info, station) {
-  const kinds = answerKinds(query)
-  const wrong = reason => new PlcError('BAD_ANSWER', { station, reason })
-  if (!kinds) {
-    if (info[0] !== 0) throw wrong(`acknowledgement ${hex(info[0])} instead of 00`)
-    return true
-  }
+  if (query.ask === 'readWords') return wordsOf(info)
+  if (query.ask === 'readBits') return Array.from(info, value => bitOf(value, station))
+  if (query.ask === 'readMixed') return mixedOf(query, info, station)
+  if (info[0] !== 0) throw wrong(`acknowledgement ${hex(info[0])} instead of 00`, station)
+  return true
+}
+
+function wordsOf(info) {
+  const words = []
+  for (let i = 0; i < info.length; i += 2) words.push(wordAt(info, i))
+  return words
+}
+
+function mixedOf({ addresses }, info, station) {
   let i = 0
-  return kinds.map(kind => {
-    if (kind === 'word') {
-      i += 2
-      return wordAt(info, i - 2)
-    }
-    if (!isBit(info[i])) throw wrong(`bit value ${hex(info[i])} instead of 00 or FF`)
-    return info[i++] === ON
+  return addresses.map(({ kind }) => {
+    if (kind === 'bit') return bitOf(info[i++], station)
+    i += 2
+    return wordAt(info, i - 2)
   })
 }
 
+function bitOf(value, station) {
+  if (!isBit(value)) throw wrong(`bit value ${hex(value)} instead of 00 or FF`, station)
+  return value === ON
+}
+
+const wrong = (reason, station) => new PlcError('BAD_ANSWER', { station, reason })
 const hex = value => value.toString(16).toUpperCase().padStart(2, '0')
 
 /**
@@ -193,6 +227,7 @@ const isRepeatable = query => functionOf(query.ask).repeatable
 
 module.exports = {
   encodeQuery,
+  queryBytes,
   encodeResponseRequest,
   decodeQuery,
   answerInfoLength,

@@ -377,4 +377,27 @@ describe('NX conversation: stations and settings', () => {
     read([LOST, LOST, LOST], { facts })
     assert.deepEqual(facts, { attempts: 3, nonStandard: false, repeated: false, master: 0xe4 })
   })
+
+  it('facts that were used before begin anew', () => {
+    const facts = { attempts: 7, nonStandard: true, repeated: true, master: 0xe9, seenStation: 5 }
+    read([LOST, LOST, LOST], { facts })
+    assert.deepEqual(facts, { attempts: 3, nonStandard: false, repeated: false, master: 0xe4 })
+  })
+
+  it('the same query to another station, in other steps, from another ID, with other limits has its own bytes', () => {
+    const query = { ...WORDS }
+    const bytes = options => sent(read([LOST], { attempts: 1, ...options }, query))
+    const first = { station: 1, steps: 2 }
+    const expected = [
+      [first, show(frame([1, 0xe2, 0x23], [0xc0, 0, 2]))],
+      [first, show(frame([1, 0xe2, 0x23], [0xc0, 0, 2]))],
+      [{ ...first, station: 2 }, show(frame([2, 0xe2, 0x23], [0xc0, 0, 2]))],
+      [{ ...first, steps: 4 }, show(frame([1, 0xe2, 0x03], [0xc0, 0, 2]))],
+      [{ ...first, ids: masterIds({ ids: [0xe5] }) }, show(frame([1, 0xe5, 0x23], [0xc0, 0, 2]))],
+      [first, show(frame([1, 0xe2, 0x23], [0xc0, 0, 2]))]
+    ]
+    for (const [options, shown] of expected) assert.deepEqual(bytes(options), [shown], JSON.stringify(options))
+    const strict = { ...first, limits: { readWords: 1, info: 256 } }
+    assert.equal(read([], strict, query).error.code, 'BAD_COUNT')
+  })
 })

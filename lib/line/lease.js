@@ -114,7 +114,9 @@ class Lease {
 
   off(event, listener) {
     const at = this.#listeners.findIndex(([name, fn]) => name === event && fn === listener)
-    if (at >= 0) this.#listeners.splice(at, 1)
+    // another lease may hear with the same function
+    if (at < 0) return this
+    this.#listeners.splice(at, 1)
     this.#line.off(event, listener)
     return this
   }

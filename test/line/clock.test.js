@@ -19,6 +19,14 @@ describe('line: the clock of the machine', () => {
     assert.ok(Object.isFrozen(realClock))
   })
 
+  it('lingers until a moment, for parts of a millisecond', () => {
+    const until = realClock.now() + 0.6
+    realClock.linger?.(until)
+    const late = realClock.now() - until
+    assert.ok(late >= 0, `${late}`)
+    realClock.linger?.(until - 1000)
+  })
+
   it('a moment as a text, where a date can say it', () => {
     assert.equal(timeText(0), '1970-01-01T00:00:00.000Z')
     assert.equal(timeText(8.64e15), '+275760-09-13T00:00:00.000Z')

@@ -68,6 +68,22 @@ describe('line: a lease', () => {
     await run(stays.release())
   })
 
+  it('one that does not want to hear any more takes nothing from another one that hears with the same function', async () => {
+    const { lease, open, run } = createBench()
+    const stays = open({}, 'stays')
+    const heard = []
+    const hears = ({ event }) => heard.push(event)
+    stays.on('event', hears)
+    lease.off('event', hears)
+    lease.on('event', hears).off('event', hears).off('event', hears)
+    stays.line.report({ event: 'one', station: null })
+    assert.deepEqual(heard, ['one'])
+    await run(lease.release())
+    stays.line.report({ event: 'two', station: null })
+    assert.deepEqual(heard, ['one', 'two'])
+    await run(stays.release())
+  })
+
   it('shows the line: its times, and the flow control of its driver', async () => {
     const { lease } = createBench({ settings: { baudRate: 9600, flowControl: 'rtscts', gap: 9 } })
     const { line } = lease

@@ -4684,6 +4684,7 @@ var nxlineSerialPlc = (() => {
       };
       var rawOf = (item, index, raw) => {
         if (item.packed) return packed(raw);
+        if (!item.throughWord) return raw;
         return readBackValues({ address: item.address + index, through: item.throughWord }, raw);
       };
       var elementOf = (item, index, reading) => {
@@ -4711,8 +4712,11 @@ var nxlineSerialPlc = (() => {
             item,
             item.elements.map((_, index) => elementOf(item, index, readings[next++]))
           ) : elementOf(item, 0, readings[next++]);
-          const { text, label, unit, tag } = item;
-          return Object.assign(result, { item: text, label, unit, deadband: tag ? tag.deadband : 0 });
+          result.item = item.text;
+          result.label = item.label;
+          result.unit = item.unit;
+          result.deadband = item.tag ? item.tag.deadband : 0;
+          return result;
         });
       };
       module.exports = {

@@ -37,8 +37,18 @@ const healthOf = memory => {
   return memory.health
 }
 
+/** Those of a plan come again and again. @type {WeakMap<Request, string>} */
+const keys = new WeakMap()
+
 /** @param {Request} request @returns {string} equal for equal requests, as far as it matters here */
-const keyOf = ({ ask, base, count, addresses, writes, values }) => {
+const keyOf = request => {
+  let key = keys.get(request)
+  if (key === undefined) keys.set(request, (key = describe(request)))
+  return key
+}
+
+/** @param {Request} request */
+const describe = ({ ask, base, count, addresses, writes, values }) => {
   const places = addresses ?? writes
   return `${ask} ${base ?? places?.[0]?.address} ${count ?? places?.length ?? values?.length}`
 }

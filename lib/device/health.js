@@ -85,7 +85,8 @@ class Health {
    * @param {any} options of `lease.run`; `request`: what is read, if that is known by now
    * @returns {Promise<any>} rejects with STATION_DEMOTED, too
    */
-  run(make, { request, ...options }) {
+  run(make, options) {
+    const { request } = options
     const refusal = this.#refusal(request)
     if (refusal) return Promise.reject(refusal)
     const begin = () => {
@@ -144,17 +145,20 @@ class Health {
     }
   }
 
-  /** Also an answer that comes too late is heard: the line keeps the recogniser. A probe waits shorter, but is not late sooner. */
+  /**
+   * Also an answer that comes too late is heard: the line keeps the recogniser. A probe waits shorter, but is not late sooner. The step itself is
+   * changed: a conversation makes a new one each time.
+   */
   #heard(step, patience) {
     const { match, timeout } = step
     if (!match) return step
-    const listening = bytes => {
+    step.match = bytes => {
       const verdict = match(bytes)
       if (verdict.take > 0 && verdict.take <= bytes.length) this.#revive()
       return verdict
     }
-    const short = patience < timeout ? { timeout: patience, lateAfter: timeout } : {}
-    return { ...step, match: listening, ...short }
+    if (patience < timeout) Object.assign(step, { timeout: patience, lateAfter: timeout })
+    return step
   }
 
   #answered(request) {

@@ -85,6 +85,7 @@ const pointsOf = items => {
 
 const rawOf = (item, index, raw) => {
   if (item.packed) return packed(raw)
+  if (!item.throughWord) return raw
   return readBackValues({ address: item.address + index, through: item.throughWord }, raw)
 }
 
@@ -127,9 +128,12 @@ const resultsOf = (items, readings) => {
           item.elements.map((_, index) => elementOf(item, index, readings[next++]))
         )
       : elementOf(item, 0, readings[next++])
-    const { text, label, unit, tag } = item
     // it is ours and new: no copy for each of a thousand
-    return Object.assign(result, { item: text, label, unit, deadband: tag ? tag.deadband : 0 })
+    result.item = item.text
+    result.label = item.label
+    result.unit = item.unit
+    result.deadband = item.tag ? item.tag.deadband : 0
+    return result
   })
 }
 

@@ -134,7 +134,7 @@ class Poller {
   /** Short intervals first; a long cycle does not hold up those that come more often. @param {Member[]} ready */
   #cycle(ready) {
     if (ready.length === 0) return
-    const membersOf = groups => groups.flatMap(({ members }) => members)
+    if (ready.length === 1) return this.#start(ready)
     const parts = together(byInterval(ready), groups => this.#estimate(this.#pointsOf(membersOf(groups))))
     for (const part of parts) this.#start(membersOf(part))
   }
@@ -161,15 +161,16 @@ class Poller {
       readings => {
         let from = 0
         for (const { member, count } of shares) {
-          const own = readings.slice(from, from + count)
+          tell(member, { readings: shares.length === 1 ? readings : readings.slice(from, from + count) })
           from += count
-          told(() => member.end(own))
         }
       },
-      error => members.forEach(member => told(() => member.fail(error)))
+      error => members.forEach(member => tell(member, { error }))
     )
   }
 }
+
+const membersOf = groups => groups.flatMap(({ members }) => members)
 
 /** @param {Member[]} members @returns {{ interval: number, members: Member[] }[]} */
 const byInterval = members => {
@@ -183,9 +184,10 @@ const byInterval = members => {
 }
 
 /** Who is told and throws does not keep the others from being told. */
-const told = tell => {
+const tell = (member, /** @type {{ readings?: any[], error?: any }} */ { readings, error: failure }) => {
   try {
-    tell()
+    if (readings) member.end(readings)
+    else member.fail(failure)
   } catch (/** @type {any} */ error) {
     process.emitWarning(`a callback of a subscription failed: ${error?.message ?? error}`)
   }

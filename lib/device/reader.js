@@ -94,10 +94,14 @@ class Reader {
   async #run(requests, job) {
     let answered = false
     for (let next = 0; next < requests.length; next++) {
-      const indexes = requests[next].points.map(({ point }) => point)
-      const refused = await this.#attempt(requests[next], job)
-      const error = refused && (await this.#settle(refused, requests[next], job))
-      if (error) this.#fail(indexes, error, job)
+      const request = requests[next]
+      let error = null
+      try {
+        this.#served(request, await this.#talk.read(request, job), job)
+      } catch (caught) {
+        error = await this.#settle(asPlcError(caught, this.#station), request, job)
+      }
+      if (error) this.#fail(indexesOf(request), error, job)
       if (!error || !isStationFailure(error) || BROKEN.has(error.code)) answered = true
       // after an answer one silence may be that request's own fault; a second one is the station's
       else if (answered && error.code === 'TIMEOUT') answered = false
@@ -106,29 +110,22 @@ class Reader {
     return null
   }
 
-  /** One request; its points get their readings. @returns {Promise<PlcError|null>} */
-  async #attempt(request, job) {
-    try {
-      const answer = await this.#talk.read(request, job)
-      const at = Math.round(this.#clock.wall())
-      const { absent } = this.#plans
-      for (const served of request.points) {
-        job.readings[served.point] = { raw: servedValues(answer, served), at }
-        if (absent.size > 0 && absent.delete(keyOf(job.points[served.point]))) this.#plans.learnt()
-      }
-      return null
-    } catch (caught) {
-      return asPlcError(caught, this.#station)
+  /** The points of a request get their readings. */
+  #served(request, answer, { points, readings }) {
+    const at = Math.round(this.#clock.wall())
+    const { absent } = this.#plans
+    for (const served of request.points) {
+      readings[served.point] = { raw: servedValues(answer, served), at }
+      if (absent.size > 0 && absent.delete(keyOf(points[served.point]))) this.#plans.learnt()
     }
   }
 
   /** What another plan can mend. @returns {Promise<PlcError|null>} what is left of the error */
   async #settle(error, request, job) {
-    const indexes = request.points.map(({ point }) => point)
     if (this.#plan.splits.has(error.code)) return this.#split(request, error, job)
     if (this.#plan.simpler(request, error)) {
       this.#plans.learnt()
-      return this.#run(this.#plans.requests([indexes], job), job)
+      return this.#run(this.#plans.requests([indexesOf(request)], job), job)
     }
     return error
   }
@@ -178,16 +175,12 @@ class Reader {
   }
 
   #failRest(requests, error, job) {
-    for (const { points } of requests) {
-      this.#fail(
-        points.map(({ point }) => point),
-        error,
-        job
-      )
-    }
+    for (const request of requests) this.#fail(indexesOf(request), error, job)
     return error
   }
 }
+
+const indexesOf = ({ points }) => points.map(({ point }) => point)
 
 /** The points of a request as they stand in its answer. */
 const inOrder = ({ points }) =>

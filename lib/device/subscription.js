@@ -7,12 +7,17 @@ const MOST = 86400000
 
 /** The failure of a whole cycle: every item is bad, for one reason. */
 const failureOf = results => {
-  const [first] = results
-  if (!first || !results.every(({ quality, code }) => quality === 'bad' && code === first.code)) return null
+  const first = results[0]
+  if (first?.quality !== 'bad' || !results.every(({ quality, code }) => quality === 'bad' && code === first.code))
+    return null
   return { code: first.code, text: first.text }
 }
 
-const stateOf = results => results.map(({ code = '' }) => code).join()
+/** What is bad, and why. */
+const stateOf = results => {
+  for (const { code } of results) if (code) return results.map(each => each.code ?? '').join()
+  return ','.repeat(Math.max(0, results.length - 1))
+}
 
 /** @returns {number} ms */
 const readInterval = value => {

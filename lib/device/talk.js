@@ -73,12 +73,11 @@ class Talk {
    * @param {{ priority: number }} options
    * @returns {Promise<(boolean|number)[]>} raw values in order
    */
-  async read(query, { priority }) {
+  read(query, { priority }) {
     const key = keyOf(query)
     const { station, deadline } = this.#settings
     const options = { station, priority, key, deadline, label: key, request: query }
-    const make = () => ({ request: query, dialog: this.#reading(query, key) })
-    return (await this.#health.run(make, options)).values
+    return this.#health.run(() => ({ request: query, dialog: this.#reading(query, key) }), options)
   }
 
   /** Whether reads may be repeated by their short form at all. */
@@ -116,19 +115,28 @@ class Talk {
     return this.#reading(request, '', 1)
   }
 
-  /** @param {any} query @param {string} key '': not to be repeated by an RR @param {number} [attempts] */
+  /** Raw values. @param {any} query @param {string} key '': not to be repeated by an RR @param {number} [attempts] */
   *#reading(query, key, attempts = this.#settings.attempts) {
     const last = this.#begin()
     const { masterIds: row } = this.#settings
     // with one ID there is nothing to find out
     const trial = row.length > 1 ? this.#watch.trial() : undefined
     const same = this.repeating && key !== '' && this.#isLast(last, key)
-    const options = { ...this.#options(trial), attempts, again: same ? last.master : undefined }
-    const result = yield* this.#watched(readDialog(query, options), options)
+    const options = this.#options(trial)
+    options.attempts = attempts
+    options.again = same ? last.master : undefined
+    let result
+    try {
+      result = yield* readDialog(query, options)
+    } catch (/** @type {any} */ error) {
+      this.#watch.note({ id: options.facts.master, trial: trial !== undefined, code: error.code })
+      throw error
+    }
+    this.#watch.note({ id: result.master, trial: trial !== undefined })
     this.#note(result)
     if (same) this.#repeatWatch.note(result.repeated)
     if (this.repeating) this.#memory.lastRead = { key, master: result.master, stray: this.#lease.line.strays }
-    return result
+    return result.values
   }
 
   /** A read inside of a write. */
@@ -149,25 +157,13 @@ class Talk {
     return result
   }
 
-  *#watched(dialog, { facts, ids }) {
-    const end = code => this.#watch.note({ id: facts.master, trial: ids !== this.#ids, code })
-    try {
-      const result = yield* dialog
-      end()
-      return result
-    } catch (/** @type {any} */ error) {
-      end(error.code)
-      throw error
-    }
-  }
-
-  /** @param {number} [fixed] the one ID to send from */
+  /** @param {number} [fixed] the one ID to send from @returns {any} */
   #options(fixed) {
     const { station, steps, timeout, attempts, gap, limits } = this.#settings
     const ids = fixed === undefined ? this.#ids : { ...this.#ids, take: () => fixed }
     /** @type {{ master?: number }} */
     const facts = {}
-    return { station, steps, timeout, attempts, gap, limits, ids, facts }
+    return { station, steps, timeout, attempts, gap, limits, ids, facts, again: undefined }
   }
 
   /** The line begins a run of a station only when no older answer can come any more. */
@@ -193,8 +189,17 @@ class Talk {
   }
 }
 
+/** Those of a plan come again and again. @type {WeakMap<any, string>} */
+const keys = new WeakMap()
+
 /** Equal for equal queries: the same read that still waits is not queued twice. */
 const keyOf = query => {
+  let key = keys.get(query)
+  if (key === undefined) keys.set(query, (key = describe(query)))
+  return key
+}
+
+const describe = query => {
   if (query.ask !== 'readMixed') return `${query.ask} ${query.base} ${query.count}`
   return `readMixed ${query.addresses.map(({ kind, address }) => `${kind[0]}${address}`).join(' ')}`
 }

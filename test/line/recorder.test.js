@@ -72,6 +72,7 @@ describe('line: what happened, counted and kept', () => {
     assert.deepEqual(told, ['5 TIMEOUT', '5 INCOMPLETE', '5 CRC_ERROR', '5 boom'])
     const { busy, timeouts, incomplete, crcErrors, answers } = counts()
     assert.deepEqual([busy, timeouts, incomplete, crcErrors, answers], [0, 1, 1, 1, 0])
+    assert.deepEqual(Object.keys(counts()), Object.keys(create().counts()), 'and nothing else is counted')
   })
 
   it('a step that awaits no answer has none', () => {
@@ -119,6 +120,7 @@ describe('line: what happened, counted and kept', () => {
     ])
     const { messagesOut, busy, timeouts, stations } = counts()
     assert.deepEqual([messagesOut, busy, timeouts, stations, told], [1, 25, 1, {}, ['null TIMEOUT', 'null boom']])
+    assert.deepEqual(Object.keys(counts()), Object.keys(create().counts()), 'and nothing else is counted')
   })
 
   it('bytes that nobody asked for, and how many all of them were', () => {

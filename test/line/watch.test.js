@@ -367,6 +367,25 @@ describe('line: monitor', () => {
     monitor.stop()
   })
 
+  it('percent busy goes on over an outage of the line; a line that has closed is not busy', async () => {
+    const { clock, pool, lease, wire, run } = createBench({ onQuery: answering })
+    const monitor = pool.monitor({ transport: 'simulated', wire })
+    await clock.advance(10)
+    monitor.statistics()
+    const from = clock.now()
+    await run(lease.run(() => toy.ask(4), { station: 4 }))
+    wire.unplug()
+    await clock.advance(500)
+    const { state, busyPercent } = monitor.statistics()
+    const percent = (100 * lease.line.stats().busy) / (clock.now() - from)
+    assert.equal(state, 'open')
+    assert.ok(percent > 1 && Math.abs(busyPercent - percent) <= 0.05, `${busyPercent}, not ${percent}`)
+    await run(lease.release())
+    const closed = monitor.statistics()
+    assert.deepEqual([closed.state, closed.queries, closed.busyPercent], ['closed', 0, 0])
+    monitor.stop()
+  })
+
   it('the reason of a line that is down: code, cause, remedy', async () => {
     const { clock, pool, wire } = createBench()
     wire.refuse = gone()

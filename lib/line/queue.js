@@ -3,6 +3,7 @@
 /** Classes in the order in which they go; within a class the stations take turns, within a station the oldest goes. */
 const PRIORITY = Object.freeze({ WRITE: 0, ASK: 1, POLL: 2 })
 const CLASSES = Object.values(PRIORITY)
+const LAST = Object.freeze({ first: false })
 
 /**
  * What waits for the line. Knows no time: whether a station may be asked now is the caller's answer.
@@ -38,7 +39,7 @@ class Queue {
   }
 
   /** @param {any} entry @param {{ first?: boolean }} [options] first: before the others of its station */
-  add(entry, { first = false } = {}) {
+  add(entry, { first } = LAST) {
     const stations = this.#classes[entry.priority]
     const list = stations.get(entry.station)
     if (!list) stations.set(entry.station, [entry])
@@ -59,7 +60,9 @@ class Queue {
   }
 
   #take(stations, list, at) {
-    const [entry] = at === 0 ? [list.shift()] : list.splice(at, 1)
+    const entry = list[at]
+    if (at === 0) list.shift()
+    else list.splice(at, 1)
     if (list.length === 0) stations.delete(entry.station)
     if (entry.share !== null && this.#shared.get(entry.share) === entry) this.#shared.delete(entry.share)
     this.#size--
@@ -74,13 +77,14 @@ class Queue {
   next(ready) {
     for (const priority of this.#order()) {
       const stations = this.#classes[priority]
-      for (const [station, list] of stations) {
+      if (stations.size === 0) continue
+      for (const list of stations.values()) {
         if (!ready(list[0])) continue
         const entry = this.#take(stations, list, 0)
         // to the end of the turn
         if (list.length > 0) {
-          stations.delete(station)
-          stations.set(station, list)
+          stations.delete(entry.station)
+          stations.set(entry.station, list)
         }
         this.#count(priority)
         return entry
@@ -91,10 +95,19 @@ class Queue {
 
   /** Highest class first, but a class that was passed over often enough goes before. */
   #order() {
-    const starved = CLASSES.filter(c => this.#passed[c] >= this.#most && this.#classes[c].size > 0)
-    if (starved.length === 0) return CLASSES
+    if (!this.#isAnyStarved) return CLASSES
+    const starved = CLASSES.filter(c => this.#isStarved(c))
     starved.sort((a, b) => this.#passed[b] - this.#passed[a])
     return [...starved, ...CLASSES.filter(c => !starved.includes(c))]
+  }
+
+  #isStarved(c) {
+    return this.#passed[c] >= this.#most && this.#classes[c].size > 0
+  }
+
+  get #isAnyStarved() {
+    for (const c of CLASSES) if (this.#isStarved(c)) return true
+    return false
   }
 
   #count(priority) {

@@ -31,8 +31,7 @@ class Recorder {
 
   sent(station, bytes, label) {
     this.#sentAt = this.#clock.now()
-    this.stats.count('queries', station)
-    this.stats.add('bytesOut', bytes.length)
+    this.stats.asked(station, bytes.length)
     this.#row('out', { station, bytes, note: label })
   }
 

@@ -89,11 +89,12 @@ class Requests {
       const most = this.#settings.queueLimit
       return Promise.reject(new PlcError('QUEUE_FULL', { line: this.#name, most, sent: false }))
     }
-    const late = limit => new PlcError('DEADLINE', { line: this.#name, limit })
-    const promise = this.#scheduler.add(make, options, late).join(lease)
+    const promise = this.#scheduler.add(make, options, this.#tooLate).join(lease)
     this.#driver.pump()
     return promise
   }
+
+  #tooLate = limit => new PlcError('DEADLINE', { line: this.#name, limit })
 
   /** Lets the next one go, if the wire is free. */
   pump() {

@@ -8,6 +8,8 @@ const BREATH = 5
 /** A timer takes whole ms and fires a little later: for so little (ms) above them, of which most has then gone by, it is not set a whole ms longer. */
 const PART = 0.4
 
+const never = () => false
+
 /** Waits until the wire has been silent for a while. One wait at a time. */
 class Silence {
   #clock
@@ -25,8 +27,8 @@ class Silence {
    * @param {() => void} done at once, if it is silent already
    * @param {(now: number) => boolean} [givenUp] asked whenever it is not silent yet; true ends the wait
    */
-  wait(ms, done, givenUp = () => false) {
-    this.stop()
+  wait(ms, done, givenUp = never) {
+    if (this.#timer !== null) this.stop()
     this.#look({ ms, done, givenUp, wokenAt: this.#clock.now(), rested: false })
   }
 

@@ -11,6 +11,7 @@ const zeros = names => Object.fromEntries(names.map(name => [name, 0]))
 
 /** Counters of a line and of each of its stations. Plain numbers; they only grow. */
 class Stats {
+  /** @type {Record<string, number>} */
   #line = { ...zeros(LINE), busy: 0 }
   #stations = new Map()
   /** What is remembered of each station, over redeploys. @type {Map<any, any>} */
@@ -32,10 +33,18 @@ class Stats {
     this.#line[name] += amount
   }
 
+  /** @param {any} station @param {number} bytes of the query */
+  asked(station, bytes) {
+    this.#line.queries++
+    this.#line.bytesOut += bytes
+    this.#of(station).counts.queries++
+  }
+
   /** @param {any} station @param {number} ms from the computed end of sending to the end of the answer */
   answered(station, ms) {
-    this.count('answers', station)
     const latency = this.#of(station)
+    this.#line.answers++
+    latency.counts.answers++
     latency.min = Math.min(latency.min, ms)
     latency.max = Math.max(latency.max, ms)
     latency.sum += ms

@@ -4,6 +4,8 @@ const MOST_BYTES = 600
 /** Noise of one burst is one row: else a flood of single bytes would push the frames out. */
 const BURST = 100
 
+const copyOf = bytes => Buffer.from(bytes.length > MOST_BYTES ? bytes.subarray(0, MOST_BYTES) : bytes)
+
 /** The last frames of a line, oldest first. Bounded; bytes become text only when somebody looks. */
 class Trace {
   #rows = []
@@ -19,11 +21,10 @@ class Trace {
 
   /** @param {{ t: number, dir: 'out'|'in', station: any, bytes: Buffer, note: string }} row t: epoch ms */
   add({ t, dir, station, bytes, note }) {
-    this.#put({ t, dir, station, bytes, note }, false)
+    this.#put({ t, dir, station, bytes: copyOf(bytes), note }, false)
   }
 
-  #put({ t, dir, station, bytes, note }, grows) {
-    const row = { t, dir, station, bytes: Buffer.from(bytes.subarray(0, MOST_BYTES)), note }
+  #put(row, grows) {
     if (this.#rows.length < this.#limit) this.#rows.push(row)
     else this.#rows[this.#at] = row
     this.#at = (this.#at + 1) % this.#limit
@@ -34,7 +35,7 @@ class Trace {
   addStray({ t, bytes, note }) {
     const last = this.#rows[(this.#at + this.#limit - 1) % this.#limit]
     if (!last || last.note !== note || t - last.t > BURST) {
-      return this.#put({ t, dir: 'in', station: null, bytes, note }, true)
+      return this.#put({ t, dir: 'in', station: null, bytes: copyOf(bytes), note }, true)
     }
     last.t = t
     if (last.bytes.length < MOST_BYTES) last.bytes = Buffer.concat([last.bytes, bytes]).subarray(0, MOST_BYTES)

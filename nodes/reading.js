@@ -60,15 +60,25 @@ const faultOf = results => {
   return withCode(bad[0].code, bad[0].text + more)
 }
 
-const summary = results => {
-  const bad = results.filter(isBad)
-  return { phase: /** @type {'read'} */ ('read'), count: results.length, bad: bad.length, code: bad[0]?.code }
+/** @param {any[]} results @param {number | null} advice a timeout that would do */
+const summary = (results, advice) => {
+  let bad = 0
+  let code
+  for (const result of results) {
+    if (!isBad(result)) continue
+    if (bad === 0) code = result.code
+    bad++
+  }
+  return { phase: /** @type {'read'} */ ('read'), count: results.length, bad, code, advice }
 }
 
 /** Nobody asked, so nothing has to go on. Of messages sent together Node-RED copies all but the first, of single ones none. */
 const sendOneByOne = (RED, messages, send) => {
   const _msgid = RED.util.generateId()
-  for (const message of messages) send(Object.assign(message, { _msgid }))
+  for (const message of messages) {
+    message._msgid = _msgid
+    send(message)
+  }
 }
 
 /** Sends results: the first message is the one that asked, if one did, so that its other properties go on. */
@@ -144,7 +154,7 @@ const startReading = (RED, session, { named = false } = {}) => {
   const chosen = choice({ device, fixed, named })
 
   const show = results => {
-    if (!session.closed) display.update({ ...summary(results), advice: device.advice })
+    if (!session.closed) display.update(summary(results, device.advice))
   }
   const ask = async (msg, send) => {
     const { valid, complete } = chosen(msg)

@@ -7,6 +7,11 @@ const { fitted, statusOf } = require('./status')
 const SHARED = '@nxline/node-red-serial-plc/plc-line:status.'
 const STATUS_INTERVAL = 1000
 
+const differs = (change, state) => {
+  for (const key of Object.keys(change)) if (change[key] !== state[key]) return true
+  return false
+}
+
 /**
  * Shows a node's state: on change only, at most once a second, the last one always.
  * @param {any} RED @param {any} node
@@ -28,7 +33,7 @@ const statusDisplay = (RED, node) => {
     /** @param {import('./status').State} change */
     update(change) {
       // a poll says the same many times a second
-      if (Object.keys(change).every(key => change[key] === state[key])) return
+      if (!differs(change, state)) return
       state = { ...state, ...change }
       throttle(state)
     },

@@ -20,6 +20,7 @@ class Receiver {
 
   /** Removes and returns the first n bytes, as a copy: the chunk may be part of a reader's large pool. */
   take(n) {
+    if (n >= this.bytes.length) return this.takeAll()
     const taken = Buffer.from(this.bytes.subarray(0, n))
     this.bytes = this.bytes.subarray(taken.length)
     let rest = taken.length
@@ -34,7 +35,11 @@ class Receiver {
   }
 
   takeAll() {
-    return this.take(this.bytes.length)
+    if (this.bytes.length === 0) return EMPTY
+    const taken = Buffer.from(this.bytes)
+    this.bytes = EMPTY
+    this.#chunks = []
+    return taken
   }
 
   /** When the chunk of the first byte came, ms. */

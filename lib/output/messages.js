@@ -70,6 +70,7 @@ const common = (results, { device = '', simulated }) => ({
   ...(simulated ? { simulated: true } : {})
 })
 
+/** @param {Result} result @param {Shape} shape @returns {any} */
 const valueOf = (result, { booleans, badValues }) => {
   const whole = result.quality !== 'bad' || badValues === 'null'
   return whole ? shown(result.value, booleans) : null
@@ -100,25 +101,23 @@ const listMessage = (results, shape) => {
   return [{ payload, topic: shape.device ?? '', ...common(results, shape) }]
 }
 
-/** The same as `common` of one result: there may be thousands of them each second. */
-const commonOfOne = (result, { device = '', simulated }) => {
-  const { timestamp, quality } = result
-  const fields = /** @type {Record<string, any>} */ ({ timestamp, quality, device })
-  if (quality === 'bad') Object.assign(fields, badOf([result]))
-  if (simulated) fields.simulated = true
-  return fields
-}
-
-/** One message per result. `parts` lets a join node put them together again by itself. */
+/**
+ * One message per result, field by field: there may be thousands of them each second. `parts` lets a join node put them together again by itself.
+ * @param {Result[]} results @param {Shape} shape @param {(result: Result, shape: Shape) => any} payloadOf
+ */
 const messagePer = (results, shape, payloadOf) => {
-  const id = shape.id ?? `${shape.device ?? ''} ${Math.max(...results.map(({ timestamp }) => timestamp))}`
+  const { device = '', simulated } = shape
+  const id = shape.id ?? `${device} ${Math.max(...results.map(({ timestamp }) => timestamp))}`
   const count = results.length
   return results.map((result, index) => {
-    const { name, item, label, unit } = result
-    const fields = { payload: payloadOf(result), topic: name }
-    const message = Object.assign(fields, commonOfOne(result, shape), { item })
-    if (label) message.label = label
-    if (unit) message.unit = unit
+    const { name, timestamp, quality } = result
+    /** @type {Record<string, any>} */
+    const message = { payload: payloadOf(result, shape), topic: name, timestamp, quality, device }
+    if (quality === 'bad') message.bad = badOf([result]).bad
+    if (simulated) message.simulated = true
+    message.item = result.item
+    if (result.label) message.label = result.label
+    if (result.unit) message.unit = result.unit
     message.parts = { id, index, count, type: 'object', key: name }
     return message
   })
@@ -136,9 +135,9 @@ const FORMATS = {
   list: listMessage,
   message: (results, shape) => {
     const sent = results.filter(result => isSent(result, shape))
-    return messagePer(sent, shape, result => valueOf(result, shape))
+    return messagePer(sent, shape, valueOf)
   },
-  envelope: (results, shape) => messagePer(results, shape, result => envelopeOf(result, shape))
+  envelope: (results, shape) => messagePer(results, shape, envelopeOf)
 }
 
 /**

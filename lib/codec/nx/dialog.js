@@ -139,7 +139,8 @@ function begun(facts) {
   facts.attempts = 0
   facts.nonStandard = false
   facts.repeated = false
-  for (const key of ['master', 'seenStation']) if (key in facts) delete facts[key]
+  if (facts.master !== undefined) delete facts.master
+  if (facts.seenStation !== undefined) delete facts.seenStation
   return facts
 }
 

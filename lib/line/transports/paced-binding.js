@@ -30,6 +30,9 @@ const writeNow = (fd, bytes) => {
   }
 }
 
+/** Its own `stop` tells all who listen of an error, with its stack, each time; nobody listens. */
+const stopPolling = poller => (typeof poller.poller?.stop === 'function' ? poller.poller : poller).stop()
+
 /** Whether the descriptor can be read, or has hung up; false: nobody wants to know any more. @returns {Promise<boolean>} */
 const readable = (poller, pace) =>
   new Promise((resolve, reject) => {
@@ -44,7 +47,7 @@ const readable = (poller, pace) =>
       if (poller.listenerCount('writable') > 0) return
       pace.watch(null)
       poller.off('readable', told)
-      poller.stop()
+      stopPolling(poller)
       resolve(false)
     })
   })

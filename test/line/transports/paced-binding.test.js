@@ -161,6 +161,15 @@ describe('binding that reads by wire time', () => {
       assert.deepEqual([read.end, log.length, clock.pending()], [9, 4, 0])
     })
 
+    it('in the system alone, where that can be told', async () => {
+      const port = await open()
+      port.poller.poller = { stop: () => log.push('stop in the system') }
+      reading(port)
+      await soon()
+      pace.hint(clock.now() + 30)
+      assert.deepEqual(log, ['readable', 'off readable 0', 'stop in the system'])
+    })
+
     it('and if there is nothing yet, or a part, as ever', async () => {
       const port = await open()
       const read = reading(port)

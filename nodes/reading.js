@@ -85,10 +85,11 @@ const sendOneByOne = (RED, messages, send) => {
 const createDelivery = (RED, { settings, deviceNode, device }) => {
   const { format, badValues, ranges, booleans } = settings
   const { label, simulated } = deviceNode
-  const shape = { format, badValues, ranges, booleans, device: label, simulated }
   const report = createReport(settings)
   const deliver = (results, msg, send) => {
-    const parts = messagesOf(report(results, device.time), { ...shape, id: RED.util.generateId() })
+    const id = RED.util.generateId()
+    const shape = { format, badValues, ranges, booleans, device: label, simulated, id }
+    const parts = messagesOf(report(results, device.time), shape)
     if (parts.length === 0) return
     if (!msg) return sendOneByOne(RED, parts, send)
     delete msg.bad

@@ -13,10 +13,10 @@ const failureOf = results => {
   return { code: first.code, text: first.text }
 }
 
-/** What is bad, and why. */
+/** What is bad, and why; equal if that is so. Where nothing is, a number, which is compared at once. @returns {string | number} */
 const stateOf = results => {
   for (const { code } of results) if (code) return results.map(each => each.code ?? '').join()
-  return ','.repeat(Math.max(0, results.length - 1))
+  return results.length > 1 ? results.length : ''
 }
 
 /** @returns {number} ms */
@@ -33,6 +33,7 @@ class Subscription {
   #items
   /** Those of the cycle that runs. */
   #asked
+  /** @type {string | number} */
   #state = ''
   #start = 0
   #again = false

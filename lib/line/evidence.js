@@ -5,6 +5,8 @@ const BEFORE = 200
 const AFTER = 200
 /** Events among them: while a line is down no frame ends a window. */
 const MOST_EVENTS = 100
+/** Entries that are kept until the oldest are dropped. */
+const MOST_KEPT = 2 * (BEFORE + MOST_EVENTS)
 /** Stations with faults that go on; one more, and all count as new. */
 const MOST_STATIONS = 1000
 
@@ -55,9 +57,17 @@ class Evidence {
 
   #keep(entry) {
     this.#before.push(entry)
-    while (this.#frames > BEFORE || this.#before.length > BEFORE + MOST_EVENTS) {
-      if (this.#before.shift().is === 'frame') this.#frames--
+    // many at once: to take the first out of a long list at each frame costs more than all else here
+    if (this.#before.length >= MOST_KEPT) this.#trim()
+  }
+
+  /** What is too old to be given away. */
+  #trim() {
+    let count = 0
+    while (this.#frames > BEFORE || this.#before.length - count > BEFORE + MOST_EVENTS) {
+      if (this.#before[count++].is === 'frame') this.#frames--
     }
+    this.#before.splice(0, count)
   }
 
   /** Something went wrong on the wire. @param {any} station null: the line's @param {string} code */
@@ -94,6 +104,7 @@ class Evidence {
   }
 
   #open(station, code) {
+    this.#trim()
     for (const entry of this.#before.splice(0)) this.#give(entry)
     this.#frames = 0
     this.#after = AFTER

@@ -45,6 +45,17 @@ describe('evidence: which frames', () => {
     assert.deepEqual(given, [...span(301, 500), '1 TIMEOUT', ...span(501, 700)])
   })
 
+  it('of any number of frames and events the last ones that were on the wire', () => {
+    for (const count of [200, 201, 599, 600, 601, 1350]) {
+      const { given, evidence, frames, report } = bench()
+      report('audit', { outcome: 'confirmed' })
+      frames(count)
+      evidence.fault(1, 'TIMEOUT')
+      const events = count === 200 ? ['audit'] : []
+      assert.deepEqual(given, [...events, ...span(count - 199, count), '1 TIMEOUT'], `${count}`)
+    }
+  })
+
   it('faults that overlap: each frame once, to the end of the last window', () => {
     const { given, evidence, frames } = bench()
     frames(50)

@@ -48,7 +48,7 @@ const options = ({ name, mutate, spec, jobs, again }) => ({
   mutate: [mutate],
   // what was noticed by a test that is still there, in code that is still the same, counts as noticed
   incremental: again,
-  incrementalFile: path.join(REPORTS, `${name}.json`),
+  incrementalFile: path.join(REPORTS, `${name}-before.json`),
   coverageAnalysis: 'perTest',
   concurrency: jobs,
   // a mutant that turns a loop into an endless one is ended after 1.5 times the usual time and this
@@ -110,10 +110,13 @@ async function runPart(folder, mutate, { jobs, again }) {
   const file = path.join(ROOT, REPORTS, `${name}-options.json`)
   fs.mkdirSync(path.dirname(file), { recursive: true })
   fs.writeFileSync(file, JSON.stringify(options({ name, mutate, spec: PARTS[folder].tests(), jobs, again }), null, 2))
+  // a copy: Stryker writes it anew while it writes the report
+  const report = path.join(ROOT, REPORTS, `${name}.json`)
+  if (again && fs.existsSync(report)) fs.copyFileSync(report, path.join(ROOT, REPORTS, `${name}-before.json`))
   const cli = path.join(PACKAGES, 'core', 'bin', 'stryker.js')
   const end = await run('nice', ['-n', '19', process.execPath, cli, 'run', file], { cwd: ROOT, stdio: 'inherit' })
   if (end !== 0) throw new Error(`the mutation tests of ${folder} ended with ${end}`)
-  return figures(JSON.parse(fs.readFileSync(path.join(ROOT, REPORTS, `${name}.json`), 'utf8')))
+  return figures(JSON.parse(fs.readFileSync(report, 'utf8')))
 }
 
 /**

@@ -11,7 +11,7 @@ const SENT = 4 // bytes of a query
 const SHORTEST = 5
 
 /** An exchange over a transport of the test; `hints`: for how many bytes nobody needs to read until when. */
-const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off'), timeout = 200 }) => {
+const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off'), timeout = 200, character = CHARACTER }) => {
   const clock = createVirtualClock()
   const bench = {
     clock,
@@ -31,7 +31,7 @@ const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off'), timeout =
     skipped() {},
     echoed() {}
   }
-  const times = { character: CHARACTER, gap: 0, slack }
+  const times = { character, gap: 0, slack }
   const settings = { jamTime: 1000, writeTimeout: 1000 }
   const exchange = new Exchange({ clock, settings, times, echo: new Echo(echo, clock.now), link })
   const done = (error, answer) => bench.ended.push(error?.code ?? answer.length)
@@ -79,6 +79,14 @@ describe('what the transport is told to wait for', () => {
     assert.deepEqual(bench.behind, [{ rest: 24 * CHARACTER, latest: SENT + 200 }])
     await bench.come(10, answer.subarray(0, 1))
     assert.equal(bench.behind[1], undefined)
+  })
+
+  it('by the time that a character takes', async () => {
+    const bench = begin({ usual: 15, character: 2 })
+    assert.deepEqual(bench.last(), [15, 2 * (SENT + 15)])
+    assert.deepEqual(bench.behind, [{ rest: 2 * 14, latest: 2 * SENT + 200 }])
+    await bench.come(12, answer.subarray(0, 5))
+    assert.deepEqual(bench.last(), [20, 12 + 2 * 20])
   })
 
   it('the usual answer at once, where an error would be seen hardly later', async () => {

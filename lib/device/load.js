@@ -40,7 +40,7 @@ class Load {
   get #wire() {
     const { gap, silences } = this.#settings.plan
     const character = this.#line.times?.character ?? 1
-    return { requestsOf: points => this.#reader.requestsOf(points), character, gap: gap ?? 0, silences: silences ?? 1 }
+    return { requestsOf: points => this.#reader.requestsOf(points), character, gap, silences }
   }
 
   /** Other subscriptions, or other items. */

@@ -46,6 +46,7 @@ class Hints {
     return this.#turnarounds.of(station)
   }
 
+  /** One byte at least: a recogniser that needs no more has ended the step. */
   #missing({ step, need, ours }, length) {
     return (ours ? need : this.#awaited.bytes(step, need, this.#echo.expected)) - length
   }
@@ -53,7 +54,6 @@ class Hints {
   /** A query was sent. @param {Job} job @param {number} length of what has come by now, in bytes @param {number} sendEnd ms of the clock */
   sent(job, length, sendEnd) {
     const count = this.#missing(job, length)
-    if (count <= 0) return
     // our own echo comes while we send
     const echo = length === 0 ? this.#echo.expected : 0
     const at = sendEnd + (count - echo) * this.#character
@@ -66,7 +66,7 @@ class Hints {
   /** A part of the answer came. @param {Job} job @param {number} length of what has come by now @param {number} lastByteAt ms of the clock */
   more(job, length, lastByteAt) {
     const count = this.#missing(job, length)
-    if (count > 0) this.#link.hint(count, lastByteAt + count * this.#character)
+    this.#link.hint(count, lastByteAt + count * this.#character)
   }
 
   /** @param {Job} job @param {Buffer | null} answer null: it failed; empty: none was awaited @param {number} wait ms until its first byte */

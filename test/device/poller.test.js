@@ -215,6 +215,55 @@ describe('poller', () => {
     assert.deepEqual(warnings, Array(3).fill('a callback of a subscription failed: broken'))
   })
 
+  it('also where it throws no error, but anything', async () => {
+    const { clock, add } = open()
+    const warnings = []
+    const warned = warning => warnings.push(warning.message)
+    process.on('warning', warned)
+    for (const thrown of ['text', null]) {
+      add([1], 100, {
+        callback() {
+          throw thrown
+        }
+      })
+    }
+    await clock.advance(50)
+    await new Promise(resolve => setImmediate(resolve))
+    process.off('warning', warned)
+    const said = text => `a callback of a subscription failed: ${text}`
+    assert.deepEqual(warnings, [said('text'), said('null')])
+  })
+
+  it('many groups of members, one after the other: each is read as it should be', async () => {
+    const { clock, poller, reads, add } = open({ ms: 0.01 })
+    const members = Array.from({ length: 12 }, (_, n) => add([n], 86400000, { immediately: false }).subscription)
+    const expected = []
+    for (let one = 0; one < 12; one++) {
+      for (let other = one + 1; other < 12; other++) {
+        expected.push([one, other])
+        poller.now(/** @type {any} */ ([members[one], members[other]]))
+        await clock.advance(1)
+      }
+    }
+    assert.deepEqual(
+      reads.map(({ points }) => points),
+      expected
+    )
+  })
+
+  it('an interval that is no multiple of a second keeps to itself; a grid of many intervals forgets none', async () => {
+    const { clock, add } = open()
+    const long = add([1], 12345.5)
+    for (let n = 0; n < 210; n++) add([2], 100 + n, { immediately: false }).stop()
+    await clock.advance(50000)
+    const [, second, ...rest] = long.times()
+    assert.deepEqual(
+      rest.map((at, n) => at - second - 12345.5 * (n + 1)).map(late => Math.abs(late) < 1e-6),
+      rest.map(() => true)
+    )
+    assert.ok(rest.length >= 2)
+  })
+
   it('asked for at once it comes beside its times, and not while it runs', async () => {
     const { clock, poller, add } = open({ ms: 10 })
     const { seen, subscription } = add([1], 1000)

@@ -84,6 +84,8 @@ describe('predict', () => {
     const bad = items => () => predict({ line: LINE, stations: [nx([{ items, interval: 1000 }])] })
     assert.throws(bad(['X0']), { code: 'UNKNOWN_AREA' })
     assert.throws(() => predict({ line: LINE, stations: [nx([], { station: 200 })] }), { code: 'BAD_STATION' })
+    const unknown = /** @type {any} */ ({ ...nx([]), device: 'plc' })
+    assert.throws(() => predict({ line: LINE, stations: [unknown] }), { code: 'BAD_SETTING' })
   })
 })
 

@@ -11,17 +11,25 @@ const SENT = 4 // bytes of a query
 const SHORTEST = 5
 
 /** An exchange over a transport of the test; `hints`: for how many bytes nobody needs to read until when. */
-const begin = ({ usual, slack = 50, echo = /** @type {any} */ ('off'), timeout = 200, character = CHARACTER }) => {
+const begin = ({
+  usual,
+  slack = 50,
+  echo = /** @type {any} */ ('off'),
+  timeout = 200,
+  character = CHARACTER,
+  slow = false
+}) => {
   const clock = createVirtualClock()
   const bench = {
     clock,
     hints: /** @type {number[][]} */ ([]),
     behind: /** @type {any[]} */ ([]),
-    ended: /** @type {any[]} */ ([])
+    ended: /** @type {any[]} */ ([]),
+    written: /** @type {any} */ (null)
   }
   const link = {
     name: 'test',
-    write: (_bytes, done) => done(),
+    write: (_bytes, done) => (slow ? (bench.written = done) : done()),
     hint: (count, at, behind) => {
       bench.hints.push([count, at])
       bench.behind.push(behind)
@@ -79,6 +87,15 @@ describe('what the transport is told to wait for', () => {
     assert.deepEqual(bench.behind, [{ rest: 24 * CHARACTER, latest: SENT + 200 }])
     await bench.come(10, answer.subarray(0, 1))
     assert.equal(bench.behind[1], undefined)
+  })
+
+  it('behind a slow write: what is missing of an answer that has begun, with its echo', async () => {
+    const bench = begin({ usual: 25, echo: 'on', slow: true })
+    await bench.come(3, Buffer.concat([toy.query(5), answer.subarray(0, 2)]))
+    bench.written()
+    assert.deepEqual(bench.last(), [23, SENT + 23])
+    await bench.come(30, answer.subarray(2))
+    assert.deepEqual(bench.ended, [25])
   })
 
   it('by the time that a character takes', async () => {

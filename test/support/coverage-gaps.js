@@ -82,7 +82,7 @@ const GAPS = [
     'if (!end) throw',
     'modbus-serial 8 says something of each frame; kept for another version of it'
   ],
-  ['lib/device/reader.js', "if (error.code !== 'FRAME_TOO_LONG') throw error", 'addresses were checked before'],
+  ['lib/device/plans.js', "if (error.code !== 'FRAME_TOO_LONG') throw error", 'addresses were checked before'],
   ['lib/device/talk.js', 'result.seenStation ??', 'each answer of a PLC tells its number'],
   // --- real time, real descriptors
   [
@@ -103,6 +103,13 @@ const GAPS = [
   ['lib/line/evidence-file.js', "error?.code ?? 'unknown'", 'errors of the disk have codes'],
   // --- lines of tests and of programs of others
   ['lib/device/nx-plc.js', 'lease.line.times?.character ?? 0.52', 'each line of the pool has its times'],
+  ['lib/device/load.js', 'this.#line.times?.character ?? 1', 'the same'],
+  ['lib/device/load.js', 'this.#line.loads ?? new Set([this.all])', 'the same of its loads'],
+  [
+    'lib/device/health.js',
+    'if (this.#closed) return',
+    'a device that is closed by another one that hears of the same event before it'
+  ],
   ['lib/device/modbus-talk.js', 'this.#lease.line.times?.character ?? 0', 'the same'],
   [
     'lib/device/diagnosis/trials.js',

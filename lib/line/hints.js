@@ -26,7 +26,7 @@ class Hints {
 
   /**
    * @param {{ times: { character: number, slack: number }, echo: { readonly expected: number },
-   *   link: { hint: (count: number, at: number, behind?: { rest: number, latest: number }) => void } }} line
+   *   link: { hint: (count: number, at: number, behind?: { count: number, character: number, latest: number }) => void } }} line
    */
   constructor({ times, echo, link }) {
     this.#character = times.character
@@ -60,7 +60,7 @@ class Hints {
     const latest = sendEnd + job.step.timeout
     const whole = at + (job.turnaround ?? Infinity)
     if (whole < latest - SOON) this.#link.hint(count, whole)
-    else this.#link.hint(count, at, { rest: (count - 1) * this.#character, latest })
+    else this.#link.hint(count, at, { count, character: this.#character, latest })
   }
 
   /** A part of the answer came. @param {Job} job @param {number} length of what has come by now @param {number} lastByteAt ms of the clock */

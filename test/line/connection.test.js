@@ -116,7 +116,7 @@ describe('line: one connection after the other', () => {
     made[0].handlers.opened()
     assert.equal(connection.waiting, false)
     connection.check({ all: 1, known: 1 })
-    const behind = { rest: 2, latest: 40 }
+    const behind = { count: 2, character: 1, latest: 40 }
     connection.hint(3, 9, behind)
     assert.deepEqual(told, ['opened', ['hint', 3, 9, behind]])
     made[0].waiting = true

@@ -84,7 +84,7 @@ describe('what the transport is told to wait for', () => {
 
   it('behind the first byte so many more, as long as the answer is in time; what goes on, nothing but itself', async () => {
     const bench = begin({ usual: 25 })
-    assert.deepEqual(bench.behind, [{ rest: 24 * CHARACTER, latest: SENT + 200 }])
+    assert.deepEqual(bench.behind, [{ count: 25, character: CHARACTER, latest: SENT + 200 }])
     await bench.come(10, answer.subarray(0, 1))
     assert.equal(bench.behind[1], undefined)
   })
@@ -101,7 +101,7 @@ describe('what the transport is told to wait for', () => {
   it('by the time that a character takes', async () => {
     const bench = begin({ usual: 15, character: 2 })
     assert.deepEqual(bench.last(), [15, 2 * (SENT + 15)])
-    assert.deepEqual(bench.behind, [{ rest: 2 * 14, latest: 2 * SENT + 200 }])
+    assert.deepEqual(bench.behind, [{ count: 15, character: 2, latest: 2 * SENT + 200 }])
     await bench.come(12, answer.subarray(0, 5))
     assert.deepEqual(bench.last(), [20, 12 + 2 * 20])
   })
@@ -193,7 +193,7 @@ describe('what the transport is told to wait for', () => {
       const now = bench.clock.now()
       bench.next()
       assert.deepEqual(hint(bench), [25, now + SENT + 25])
-      assert.deepEqual(bench.behind.at(-1), { rest: 24, latest: now + SENT + 200 })
+      assert.deepEqual(bench.behind.at(-1), { count: 25, character: CHARACTER, latest: now + SENT + 200 })
     })
 
     it('not after so long that the timer of its timeout might come before', async () => {

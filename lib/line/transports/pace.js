@@ -7,13 +7,13 @@ const LATE = 0.3
 /** To give up a wait that is under way is worth it for so much (ms). */
 const LONG = 2
 
-const ALL = { rest: 0, latest: -Infinity }
+const NOTHING = { count: 0, character: 0, latest: -Infinity }
 
 /** When the next bytes can be there at the earliest; who sleeps until then can be woken. */
 class Pace {
   #clock
   #at = -Infinity
-  #behind = ALL
+  #behind = NOTHING
   /** @type {(() => void) | null} */
   #wake = null
   /** @type {(() => void) | null} */
@@ -26,12 +26,12 @@ class Pace {
 
   /**
    * @param {number} at ms of the clock
-   * @param {{ rest: number, latest: number }} [behind] see `hint` of a transport; without it nobody asks when the first byte comes
+   * @param {{ count: number, character: number, latest: number }} [behind] see `hint` of a transport; without it nobody asks when the first byte comes
    */
-  hint(at, behind = ALL) {
+  hint(at, behind = NOTHING) {
     this.#at = at
     this.#behind = behind
-    if (behind === ALL && at - this.#clock.now() >= LONG) this.#giveUp?.()
+    if (behind === NOTHING && at - this.#clock.now() >= LONG) this.#giveUp?.()
   }
 
   /** @param {(() => void) | null} giveUp ends the wait for the first byte, which is under way; null: it is over */
@@ -39,17 +39,17 @@ class Pace {
     this.#giveUp = giveUp
   }
 
-  /** The first byte has come. */
-  begun() {
-    const { rest, latest } = this.#behind
-    const at = this.#clock.now() + rest
-    if (at <= latest) this.#at = at
-    this.#behind = ALL
-  }
-
-  /** Something was read: what comes now is something else. */
-  done() {
-    this.#behind = ALL
+  /**
+   * The first bytes were read: whoever reads may wait for the others, once. What comes behind them is something else.
+   * @param {number} length so many bytes @returns {Promise<void> | null} null: none are awaited
+   */
+  others(length) {
+    const { count, character, latest } = this.#behind
+    this.#behind = NOTHING
+    const at = this.#clock.now() + (count - length) * character
+    if (length >= count || at > latest) return null
+    this.#at = at
+    return this.sleep()
   }
 
   /** @returns {Promise<void> | null} null: it is time */
@@ -70,7 +70,7 @@ class Pace {
 
   stop() {
     this.#at = -Infinity
-    this.#behind = ALL
+    this.#behind = NOTHING
     this.#wake?.()
   }
 }

@@ -88,22 +88,23 @@ function pacedBinding(binding, pace) {
   }
 }
 
-/** Resolves when bytes have come, and those that belong to the first of them can be there, too. */
-const begun = async (poller, pace) => {
-  if (await readable(poller, pace)) pace.begun()
-  await pace.sleep()
-}
-
 /** The system tells when there is something; but after a sleep there should be, so it is not even asked. */
-async function read(port, target, pace) {
+async function read(port, { buffer, offset, length }, pace) {
   for (;;) {
-    await (pace.sleep() ?? begun(port.poller, pace))
+    const sleep = pace.sleep()
+    if (sleep) await sleep
+    else if (!(await readable(port.poller, pace))) continue
     if (!port.isOpen) throw canceled()
-    const bytesRead = readNow(port.fd, target)
+    const bytesRead = readNow(port.fd, { buffer, offset, length })
     if (bytesRead === 0) throw hungUp()
     if (bytesRead < 0) continue
-    pace.done()
-    return bytesRead
+    const others = bytesRead < length ? pace.others(bytesRead) : null
+    if (!others) return bytesRead
+    await others
+    if (!port.isOpen) throw canceled()
+    const more = readNow(port.fd, { buffer, offset: offset + bytesRead, length: length - bytesRead })
+    // a hang-up shows again with the next read
+    return bytesRead + Math.max(0, more)
   }
 }
 

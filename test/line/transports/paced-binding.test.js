@@ -186,7 +186,7 @@ describe('binding that reads by wire time', () => {
 
     for (const [what, hint] of /** @type {[string, () => void][]} */ ([
       ['it comes soon', () => pace.hint(clock.now() + 1.9)],
-      ['somebody asks', () => pace.hint(clock.now() + 30, { rest: 20, latest: clock.now() + 100 })]
+      ['somebody asks', () => pace.hint(clock.now() + 30, { count: 20, character: 1, latest: clock.now() + 100 })]
     ])) {
       it(`not where ${what}`, async () => {
         const port = await open()
@@ -238,11 +238,13 @@ describe('binding that reads by wire time', () => {
     })
   })
 
-  describe('where the first byte tells when the others can be there', () => {
-    const begun = async (hint = { rest: 20, latest: 100 }) => {
+  describe('where a part tells when the others can be there', () => {
+    const AWAITED = { count: 12, character: 2, latest: 100 }
+    /** Some bytes have come after 10 ms. */
+    const begun = async (first, { hint = AWAITED, then = /** @type {any[]} */ ([12 - first]) } = {}) => {
       const port = await open()
       pace.hint(clock.now() + 0.4, hint)
-      results = [1, 1]
+      results = [first, ...then]
       const read = reading(port)
       await soon()
       await clock.advance(10)
@@ -251,59 +253,86 @@ describe('binding that reads by wire time', () => {
       return { port, read }
     }
 
-    it('reads then, and not at the first one', async () => {
-      const { read } = await begun()
-      await clock.advance(19)
-      assert.deepEqual([log, read.end], [['readable'], null])
+    it('waits for them by their time, and hands over all at once', async () => {
+      const { read } = await begun(1)
+      await clock.advance(21)
+      assert.deepEqual([log, read.end], [['readable', 'read'], null])
       await clock.advance(1)
       await soon()
-      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], 1, 0])
+      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read', 'read'], 12, 0])
     })
 
-    it('but not later than it may be', async () => {
-      const { read } = await begun({ rest: 20, latest: clock.now() + 29 })
-      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], 1, 0])
+    it('only for those that are missing: an adapter brings many at once', async () => {
+      const { read } = await begun(9)
+      await clock.advance(6)
+      await soon()
+      assert.deepEqual([read.end, clock.pending()], [12, 0])
     })
 
-    it('just in time', async () => {
-      const { read } = await begun({ rest: 20, latest: clock.now() + 30 })
-      assert.deepEqual([log, read.end, clock.pending()], [['readable'], null, 1])
-    })
-
-    for (const [what, next] of /** @type {[string, (seen: any) => any][]} */ ([
-      ['what comes behind them is read when it comes', async () => {}],
-      ['a new hint counts alone', async () => pace.hint(clock.now(), undefined)]
-    ])) {
-      it(what, async () => {
-        const { port, read } = await begun()
-        await clock.advance(20)
-        await soon()
-        assert.equal(read.end, 1)
-        await next(port)
-        const again = reading(port)
-        await soon()
-        port.told[1](null)
-        await soon()
-        assert.deepEqual([again.end, clock.pending()], [1, 0])
+    for (const count of [12, 13]) {
+      it(`not where ${count} of 12 have come`, async () => {
+        const { read } = await begun(count)
+        assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], count, 0])
       })
     }
 
-    it('a byte read after a sleep is not the first one', async () => {
-      const port = await open()
-      pace.hint(clock.now() + 20, { rest: 20, latest: 100 })
-      results = [1, 1]
-      reading(port)
-      await clock.advance(20)
+    it('not where there is no room for them', async () => {
+      const { read } = await begun(16, { hint: { ...AWAITED, count: 20 } })
+      assert.deepEqual([read.end, clock.pending()], [16, 0])
+    })
+
+    it('not longer than they may wait', async () => {
+      const { read } = await begun(1, { hint: { ...AWAITED, latest: clock.now() + 31 } })
+      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], 1, 0])
+      const other = await begun(1, { hint: { ...AWAITED, latest: clock.now() + 32 } })
+      assert.deepEqual([other.read.end, clock.pending()], [null, 1])
+    })
+
+    for (const [what, last] of /** @type {[string, any][]} */ ([
+      ['nothing more has come', fault('EAGAIN')],
+      ['the port has hung up', 0]
+    ])) {
+      it(`and if then ${what}, hands over what was there`, async () => {
+        const { read } = await begun(3, { then: [last] })
+        await clock.advance(18)
+        await soon()
+        assert.equal(read.end, 3)
+      })
+    }
+
+    it('fails if the port fails then', async () => {
+      const { read } = await begun(3, { then: [fault('EIO')] })
+      await clock.advance(18)
       await soon()
+      assert.equal(read.end.code, 'EIO')
+    })
+
+    it('waits once: what comes behind them is read when it comes', async () => {
+      const { port, read } = await begun(1, { then: [5, 1] })
+      await clock.advance(22)
+      await soon()
+      assert.equal(read.end, 6)
       const again = reading(port)
       await soon()
-      port.told[0](null)
+      port.told[1](null)
       await soon()
       assert.deepEqual([again.end, clock.pending()], [1, 0])
     })
 
-    it('a hang-up is seen then', async () => {
-      const { port, read } = await begun()
+    it('a part that is there after a sleep tells it, too', async () => {
+      const port = await open()
+      pace.hint(clock.now() + 20, AWAITED)
+      results = [10, 2]
+      const read = reading(port)
+      await clock.advance(20)
+      assert.equal(read.end, null)
+      await clock.advance(4)
+      await soon()
+      assert.deepEqual([read.end, clock.pending()], [12, 0])
+    })
+
+    it('a port that is closed meanwhile has ended', async () => {
+      const { port, read } = await begun(1)
       port.isOpen = false
       pace.stop()
       await soon()
@@ -362,7 +391,7 @@ describe('binding that reads by wire time', () => {
 
   it('that is closed while the descriptor is asked does not sleep any more', async () => {
     const port = await open()
-    pace.hint(clock.now(), { rest: 1000, latest: Infinity })
+    pace.hint(clock.now(), { count: 1000, character: 1, latest: Infinity })
     const read = reading(port)
     await soon()
     await port.close()

@@ -132,8 +132,8 @@ class Connection {
     }
   }
 
-  hint(count, at, behind) {
-    this.#transport?.hint(count, at, behind)
+  hint(count, at, once) {
+    this.#transport?.hint(count, at, once)
   }
 
   /** Whether bytes have come that nobody has seen yet. */

@@ -35,7 +35,7 @@ class Exchange {
 
   /**
    * @param {{ clock: any, settings: any, times: any, echo: any, link: any }} options
-   *   link: `{ name, write(bytes, done), hint(count, at, behind?), waiting(), stray(bytes), skipped(bytes), echoed(bytes) }`
+   *   link: `{ name, write(bytes, done), hint(count, at, once?), waiting(), stray(bytes), skipped(bytes), echoed(bytes) }`
    */
   constructor({ clock, settings, times, echo, link }) {
     this.#clock = clock

@@ -26,7 +26,7 @@ class Hints {
 
   /**
    * @param {{ times: { character: number, slack: number }, echo: { readonly expected: number },
-   *   link: { hint: (count: number, at: number, behind?: { count: number, character: number, latest: number }) => void } }} line
+   *   link: { hint: (count: number, at: number, once?: boolean) => void } }} line
    */
   constructor({ times, echo, link }) {
     this.#character = times.character
@@ -59,8 +59,8 @@ class Hints {
     const at = sendEnd + (count - echo) * this.#character
     const latest = sendEnd + job.step.timeout
     const whole = at + (job.turnaround ?? Infinity)
-    if (whole < latest - SOON) this.#link.hint(count, whole)
-    else this.#link.hint(count, at, { count, character: this.#character, latest })
+    if (whole < latest - SOON) this.#link.hint(count, whole, true)
+    else this.#link.hint(count, at)
   }
 
   /** A part of the answer came. @param {Job} job @param {number} length of what has come by now @param {number} lastByteAt ms of the clock */

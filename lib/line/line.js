@@ -96,7 +96,7 @@ class Line extends EventEmitter {
       recorder: this.#recorder,
       memories,
       write: (bytes, done) => this.#connection.write(bytes, done),
-      hint: (count, at, behind) => this.#connection.hint(count, at, behind),
+      hint: (count, at, once) => this.#connection.hint(count, at, once),
       waiting: () => this.#connection.waiting
     }
   }

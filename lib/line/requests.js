@@ -22,7 +22,7 @@ class Requests {
   /**
    * @param {{ name: string, clock: any, settings: any, times: any, recorder: any, memories: Map<any, any>,
    *   write: (bytes: Buffer, done: (error?: any) => void) => void, waiting: () => boolean,
-   *   hint: (count: number, at: number, behind?: { count: number, character: number, latest: number }) => void }} parts
+   *   hint: (count: number, at: number, once?: boolean) => void }} parts
    * @param {{ refusal: () => any, rejection: () => any, isOpen: () => boolean, late: (fact: any) => void, answered: (station: any) => void,
    *   troubled: (error: any) => void }} host the line
    */

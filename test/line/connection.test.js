@@ -116,9 +116,8 @@ describe('line: one connection after the other', () => {
     made[0].handlers.opened()
     assert.equal(connection.waiting, false)
     connection.check({ all: 1, known: 1 })
-    const behind = { count: 2, character: 1, latest: 40 }
-    connection.hint(3, 9, behind)
-    assert.deepEqual(told, ['opened', ['hint', 3, 9, behind]])
+    connection.hint(3, 9, true)
+    assert.deepEqual(told, ['opened', ['hint', 3, 9, true]])
     made[0].waiting = true
     made[0].check = missing => told.push(missing)
     connection.check(7)

@@ -23,16 +23,16 @@ const begin = ({
   const bench = {
     clock,
     hints: /** @type {number[][]} */ ([]),
-    behind: /** @type {any[]} */ ([]),
+    once: /** @type {boolean[]} */ ([]),
     ended: /** @type {any[]} */ ([]),
     written: /** @type {any} */ (null)
   }
   const link = {
     name: 'test',
     write: (_bytes, done) => (slow ? (bench.written = done) : done()),
-    hint: (count, at, behind) => {
+    hint: (count, at, once = false) => {
       bench.hints.push([count, at])
-      bench.behind.push(behind)
+      bench.once.push(once)
     },
     waiting: () => false,
     stray() {},
@@ -82,13 +82,6 @@ describe('what the transport is told to wait for', () => {
     assert.deepEqual(bench.ended, [25])
   })
 
-  it('behind the first byte so many more, as long as the answer is in time; what goes on, nothing but itself', async () => {
-    const bench = begin({ usual: 25 })
-    assert.deepEqual(bench.behind, [{ count: 25, character: CHARACTER, latest: SENT + 200 }])
-    await bench.come(10, answer.subarray(0, 1))
-    assert.equal(bench.behind[1], undefined)
-  })
-
   it('behind a slow write: what is missing of an answer that has begun, with its echo', async () => {
     const bench = begin({ usual: 25, echo: 'on', slow: true })
     await bench.come(3, Buffer.concat([toy.query(5), answer.subarray(0, 2)]))
@@ -101,7 +94,6 @@ describe('what the transport is told to wait for', () => {
   it('by the time that a character takes', async () => {
     const bench = begin({ usual: 15, character: 2 })
     assert.deepEqual(bench.last(), [15, 2 * (SENT + 15)])
-    assert.deepEqual(bench.behind, [{ count: 15, character: 2, latest: 2 * SENT + 200 }])
     await bench.come(12, answer.subarray(0, 5))
     assert.deepEqual(bench.last(), [20, 12 + 2 * 20])
   })
@@ -184,7 +176,7 @@ describe('what the transport is told to wait for', () => {
       const bench = await known()
       const at = wholeAt(bench)
       bench.next({ calm: true })
-      assert.deepEqual([hint(bench), bench.behind.at(-1)], [[25, at], undefined])
+      assert.deepEqual([hint(bench), bench.once.at(-1)], [[25, at], true])
       bench.next({ calm: true })
     })
 
@@ -193,7 +185,7 @@ describe('what the transport is told to wait for', () => {
       const now = bench.clock.now()
       bench.next()
       assert.deepEqual(hint(bench), [25, now + SENT + 25])
-      assert.deepEqual(bench.behind.at(-1), { count: 25, character: CHARACTER, latest: now + SENT + 200 })
+      assert.equal(bench.once.at(-1), false)
     })
 
     it('not after so long that the timer of its timeout might come before', async () => {

@@ -49,7 +49,7 @@ describe('who is in a hurry', () => {
     const hurried = /** @type {boolean[]} */ ([])
     const told = (...given) => {
       const transport = simulated(...given)
-      return Object.assign(transport, { hint: (_count, _at, behind) => hurried.push(behind !== undefined) })
+      return Object.assign(transport, { hint: (_count, _at, once) => hurried.push(!once) })
     }
     const { wire } = createNxLine({ clock, baudRate: 38400, turnaround: 5, quiet: true, stations: [1, 2] })
     const pool = createPool({ clock, transports: { simulated: told } })

@@ -7,13 +7,10 @@ const LATE = 0.3
 /** To give up a wait that is under way is worth it for so much (ms). */
 const LONG = 2
 
-const NOTHING = { count: 0, character: 0, latest: -Infinity }
-
 /** When the next bytes can be there at the earliest; who sleeps until then can be woken. */
 class Pace {
   #clock
   #at = -Infinity
-  #behind = NOTHING
   /** @type {(() => void) | null} */
   #wake = null
   /** @type {(() => void) | null} */
@@ -24,32 +21,15 @@ class Pace {
     this.#clock = clock
   }
 
-  /**
-   * @param {number} at ms of the clock
-   * @param {{ count: number, character: number, latest: number }} [behind] see `hint` of a transport; without it nobody asks when the first byte comes
-   */
-  hint(at, behind = NOTHING) {
+  /** @param {number} at ms of the clock @param {boolean} [once] nobody asks when the first byte comes */
+  hint(at, once = false) {
     this.#at = at
-    this.#behind = behind
-    if (behind === NOTHING && at - this.#clock.now() >= LONG) this.#giveUp?.()
+    if (once && at - this.#clock.now() >= LONG) this.#giveUp?.()
   }
 
   /** @param {(() => void) | null} giveUp ends the wait for the first byte, which is under way; null: it is over */
   watch(giveUp) {
     this.#giveUp = giveUp
-  }
-
-  /**
-   * The first bytes were read: whoever reads may wait for the others, once. What comes behind them is something else.
-   * @param {number} length so many bytes @returns {Promise<void> | null} null: none are awaited
-   */
-  others(length) {
-    const { count, character, latest } = this.#behind
-    this.#behind = NOTHING
-    const at = this.#clock.now() + (count - length) * character
-    if (length >= count || at > latest) return null
-    this.#at = at
-    return this.sleep()
   }
 
   /** @returns {Promise<void> | null} null: it is time */
@@ -70,7 +50,6 @@ class Pace {
 
   stop() {
     this.#at = -Infinity
-    this.#behind = NOTHING
     this.#wake?.()
   }
 }

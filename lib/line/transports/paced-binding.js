@@ -89,22 +89,15 @@ function pacedBinding(binding, pace) {
 }
 
 /** The system tells when there is something; but after a sleep there should be, so it is not even asked. */
-async function read(port, { buffer, offset, length }, pace) {
+async function read(port, target, pace) {
   for (;;) {
     const sleep = pace.sleep()
     if (sleep) await sleep
     else if (!(await readable(port.poller, pace))) continue
     if (!port.isOpen) throw canceled()
-    const bytesRead = readNow(port.fd, { buffer, offset, length })
+    const bytesRead = readNow(port.fd, target)
     if (bytesRead === 0) throw hungUp()
-    if (bytesRead < 0) continue
-    const others = bytesRead < length ? pace.others(bytesRead) : null
-    if (!others) return bytesRead
-    await others
-    if (!port.isOpen) throw canceled()
-    const more = readNow(port.fd, { buffer, offset: offset + bytesRead, length: length - bytesRead })
-    // a hang-up shows again with the next read
-    return bytesRead + Math.max(0, more)
+    if (bytesRead > 0) return bytesRead
   }
 }
 

@@ -154,8 +154,8 @@ class SerialTransport {
     this.#port.write(bytes, finish)
   }
 
-  hint(_count, at, behind) {
-    this.#pace.hint(at, behind)
+  hint(_count, at, once) {
+    this.#pace.hint(at, once)
   }
 
   /** Whether bytes have come that nobody has seen yet: the wire is not silent then. */

@@ -151,7 +151,7 @@ describe('binding that reads by wire time', () => {
       const port = await open()
       const read = reading(port)
       await soon()
-      pace.hint(clock.now() + 30)
+      pace.hint(clock.now() + 30, true)
       assert.deepEqual(log, ['readable', 'off readable 0', 'stop'])
       results = [9]
       await clock.advance(29)
@@ -166,7 +166,7 @@ describe('binding that reads by wire time', () => {
       port.poller.poller = { stop: () => log.push('stop in the system') }
       reading(port)
       await soon()
-      pace.hint(clock.now() + 30)
+      pace.hint(clock.now() + 30, true)
       assert.deepEqual(log, ['readable', 'off readable 0', 'stop in the system'])
     })
 
@@ -174,7 +174,7 @@ describe('binding that reads by wire time', () => {
       const port = await open()
       const read = reading(port)
       await soon()
-      pace.hint(clock.now() + 30)
+      pace.hint(clock.now() + 30, true)
       results = [fault('EAGAIN'), 4]
       await clock.advance(30)
       await soon()
@@ -185,8 +185,8 @@ describe('binding that reads by wire time', () => {
     })
 
     for (const [what, hint] of /** @type {[string, () => void][]} */ ([
-      ['it comes soon', () => pace.hint(clock.now() + 1.9)],
-      ['somebody asks', () => pace.hint(clock.now() + 30, { count: 20, character: 1, latest: clock.now() + 100 })]
+      ['it comes soon', () => pace.hint(clock.now() + 1.9, true)],
+      ['somebody asks', () => pace.hint(clock.now() + 30)]
     ])) {
       it(`not where ${what}`, async () => {
         const port = await open()
@@ -202,10 +202,10 @@ describe('binding that reads by wire time', () => {
       port.poller.writers = 1
       const read = reading(port)
       await soon()
-      pace.hint(clock.now() + 30)
+      pace.hint(clock.now() + 30, true)
       assert.deepEqual(log, ['readable'])
       port.poller.writers = 0
-      pace.hint(clock.now() + 30)
+      pace.hint(clock.now() + 30, true)
       assert.deepEqual(log, ['readable', 'off readable 0', 'stop'])
       results = [1]
       await clock.advance(30)
@@ -221,7 +221,7 @@ describe('binding that reads by wire time', () => {
         await soon()
         port.told[0](error)
         await soon()
-        pace.hint(clock.now() + 30)
+        pace.hint(clock.now() + 30, true)
         assert.ok(!log.includes('stop'), log.join())
       })
     }
@@ -230,113 +230,11 @@ describe('binding that reads by wire time', () => {
       const port = await open()
       const read = reading(port)
       await soon()
-      pace.hint(clock.now() + 30)
+      pace.hint(clock.now() + 30, true)
       results = [0]
       await clock.advance(30)
       await soon()
       assert.equal(read.end.disconnect, true)
-    })
-  })
-
-  describe('where a part tells when the others can be there', () => {
-    const AWAITED = { count: 12, character: 2, latest: 100 }
-    /** Some bytes have come after 10 ms. */
-    const begun = async (first, { hint = AWAITED, then = /** @type {any[]} */ ([12 - first]) } = {}) => {
-      const port = await open()
-      pace.hint(clock.now() + 0.4, hint)
-      results = [first, ...then]
-      const read = reading(port)
-      await soon()
-      await clock.advance(10)
-      port.told[0](null)
-      await soon()
-      return { port, read }
-    }
-
-    it('waits for them by their time, and hands over all at once', async () => {
-      const { read } = await begun(1)
-      await clock.advance(21)
-      assert.deepEqual([log, read.end], [['readable', 'read'], null])
-      await clock.advance(1)
-      await soon()
-      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read', 'read'], 12, 0])
-    })
-
-    it('only for those that are missing: an adapter brings many at once', async () => {
-      const { read } = await begun(9)
-      await clock.advance(6)
-      await soon()
-      assert.deepEqual([read.end, clock.pending()], [12, 0])
-    })
-
-    for (const count of [12, 13]) {
-      it(`not where ${count} of 12 have come`, async () => {
-        const { read } = await begun(count)
-        assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], count, 0])
-      })
-    }
-
-    it('not where there is no room for them', async () => {
-      const { read } = await begun(16, { hint: { ...AWAITED, count: 20 } })
-      assert.deepEqual([read.end, clock.pending()], [16, 0])
-    })
-
-    it('not longer than they may wait', async () => {
-      const { read } = await begun(1, { hint: { ...AWAITED, latest: clock.now() + 31 } })
-      assert.deepEqual([log, read.end, clock.pending()], [['readable', 'read'], 1, 0])
-      const other = await begun(1, { hint: { ...AWAITED, latest: clock.now() + 32 } })
-      assert.deepEqual([other.read.end, clock.pending()], [null, 1])
-    })
-
-    for (const [what, last] of /** @type {[string, any][]} */ ([
-      ['nothing more has come', fault('EAGAIN')],
-      ['the port has hung up', 0]
-    ])) {
-      it(`and if then ${what}, hands over what was there`, async () => {
-        const { read } = await begun(3, { then: [last] })
-        await clock.advance(18)
-        await soon()
-        assert.equal(read.end, 3)
-      })
-    }
-
-    it('fails if the port fails then', async () => {
-      const { read } = await begun(3, { then: [fault('EIO')] })
-      await clock.advance(18)
-      await soon()
-      assert.equal(read.end.code, 'EIO')
-    })
-
-    it('waits once: what comes behind them is read when it comes', async () => {
-      const { port, read } = await begun(1, { then: [5, 1] })
-      await clock.advance(22)
-      await soon()
-      assert.equal(read.end, 6)
-      const again = reading(port)
-      await soon()
-      port.told[1](null)
-      await soon()
-      assert.deepEqual([again.end, clock.pending()], [1, 0])
-    })
-
-    it('a part that is there after a sleep tells it, too', async () => {
-      const port = await open()
-      pace.hint(clock.now() + 20, AWAITED)
-      results = [10, 2]
-      const read = reading(port)
-      await clock.advance(20)
-      assert.equal(read.end, null)
-      await clock.advance(4)
-      await soon()
-      assert.deepEqual([read.end, clock.pending()], [12, 0])
-    })
-
-    it('a port that is closed meanwhile has ended', async () => {
-      const { port, read } = await begun(1)
-      port.isOpen = false
-      pace.stop()
-      await soon()
-      assert.deepEqual([read.end.canceled, clock.pending()], [true, 0])
     })
   })
 
@@ -391,7 +289,6 @@ describe('binding that reads by wire time', () => {
 
   it('that is closed while the descriptor is asked does not sleep any more', async () => {
     const port = await open()
-    pace.hint(clock.now(), { count: 1000, character: 1, latest: Infinity })
     const read = reading(port)
     await soon()
     await port.close()

@@ -92,9 +92,10 @@ function pacedBinding(binding, pace) {
 async function read(port, target, pace) {
   for (;;) {
     const sleep = pace.sleep()
-    if (sleep) await sleep
-    else if (!(await readable(port.poller, pace))) continue
+    const isTime = sleep ? await sleep.then(() => true) : await readable(port.poller, pace)
+    // also where the wait was given up: a closed port has nobody left to ask
     if (!port.isOpen) throw canceled()
+    if (!isTime) continue
     const bytesRead = readNow(port.fd, target)
     if (bytesRead === 0) throw hungUp()
     if (bytesRead > 0) return bytesRead

@@ -226,6 +226,16 @@ describe('binding that reads by wire time', () => {
       })
     }
 
+    it('a port that is closed at the same moment is not asked again', async () => {
+      const port = await open()
+      const read = reading(port)
+      await soon()
+      pace.hint(clock.now() + 30, true)
+      await port.close()
+      await soon()
+      assert.deepEqual([read.end?.canceled, log, clock.pending()], [true, ['readable', 'off readable 0', 'stop'], 0])
+    })
+
     it('a hang-up is seen when it is over', async () => {
       const port = await open()
       const read = reading(port)

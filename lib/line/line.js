@@ -286,6 +286,8 @@ class Line extends EventEmitter {
   }
 
   #late({ station, lateness, timeout, bound }) {
+    // late, but it came: whatever brought it is not dead
+    this.#answered(station)
     const ms = Math.round(lateness)
     const memory = this.memory(station)
     memory.advice = Math.max(memory.advice ?? 0, timeoutFor(timeout + ms))

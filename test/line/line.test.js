@@ -396,6 +396,27 @@ describe('line: opening, losing, coming back', () => {
     ])
   })
 
+  it('an answer that comes too late ends the row: what brought it is there', async () => {
+    const checks = []
+    const { simulated } = require('../../lib/line/transports/memory')
+    const checking = (settings, clock) => ({
+      ...simulated(settings, clock),
+      check: ({ all, known }) => checks.push([all, known])
+    })
+    const { lease, run, wire } = createBench({ transports: { simulated: checking } })
+    wire.onQuery = bytes => wire.reply(toy.answer(bytes[1], [bytes[1]], bytes[2]), { after: 250 })
+    for (const nonce of [1, 2, 3, 4]) {
+      const asked = lease.run(() => toy.ask(4, { nonce, timeout: 200 }), { station: 4 })
+      assert.equal((await run(failure(asked))).code, 'TIMEOUT')
+    }
+    assert.deepEqual(checks, [
+      [1, 0],
+      [1, 1],
+      [1, 1],
+      [1, 1]
+    ])
+  })
+
   it('a transport that goes when it is asked ends the run, which cannot be repeated', async () => {
     const { simulated } = require('../../lib/line/transports/memory')
     const going = (settings, clock) => {

@@ -3217,7 +3217,7 @@ var nxlineSerialPlc = (() => {
         return (model.repeats ? ordered(frames) : byAddress(frames)).map(requestOf);
       };
       var servedValues = (answer, { at, count, bit }) => {
-        if (bit === void 0) return answer.slice(at, at + count);
+        if (bit === void 0) return count === 1 ? [answer[at]] : answer.slice(at, at + count);
         return Array.from({ length: count }, (_, step) => {
           const place = bit + step;
           return Boolean(Number(answer[at + (place >> 4)]) >> (place & 15) & 1);
@@ -4705,18 +4705,26 @@ var nxlineSerialPlc = (() => {
         const result = { name: item.name, value, quality: bad ? "bad" : "good", timestamp, elements };
         return bad ? { ...result, code: bad.code, text: bad.text } : result;
       };
+      var deadbandOf = ({ tag }) => tag ? tag.deadband : 0;
+      var described = (item, result) => {
+        const { text, label, unit } = item;
+        return Object.assign(result, { item: text, label, unit, deadband: deadbandOf(item) });
+      };
+      var singleOf = (item, reading) => {
+        if ("error" in reading) return described(item, elementOf(item, 0, reading));
+        const answer = decodeValue(item, rawOf(item, 0, reading.raw));
+        if ("code" in answer) return described(item, elementOf(item, 0, reading));
+        const { name, text, label, unit } = item;
+        const { value } = answer;
+        const deadband = deadbandOf(item);
+        return { name, timestamp: reading.at, value, quality: "good", item: text, label, unit, deadband };
+      };
       var resultsOf = (items, readings) => {
         let next = 0;
         return items.map((item) => {
-          const result = item.range ? arrayOf(
-            item,
-            item.elements.map((_, index) => elementOf(item, index, readings[next++]))
-          ) : elementOf(item, 0, readings[next++]);
-          result.item = item.text;
-          result.label = item.label;
-          result.unit = item.unit;
-          result.deadband = item.tag ? item.tag.deadband : 0;
-          return result;
+          if (!item.range) return singleOf(item, readings[next++]);
+          const elements = item.elements.map((_, index) => elementOf(item, index, readings[next++]));
+          return described(item, arrayOf(item, elements));
         });
       };
       module.exports = {

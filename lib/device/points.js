@@ -112,6 +112,24 @@ const arrayOf = (item, elements) => {
   return bad ? { ...result, code: bad.code, text: bad.text } : result
 }
 
+const deadbandOf = ({ tag }) => (tag ? tag.deadband : 0)
+
+const described = (item, result) => {
+  const { text, label, unit } = item
+  return Object.assign(result, { item: text, label, unit, deadband: deadbandOf(item) })
+}
+
+/** Of an item that is no range. A good one is made as one object: there may be thousands of them each second. */
+const singleOf = (item, reading) => {
+  if ('error' in reading) return described(item, elementOf(item, 0, reading))
+  const answer = decodeValue(item, rawOf(item, 0, reading.raw))
+  if ('code' in answer) return described(item, elementOf(item, 0, reading))
+  const { name, text, label, unit } = item
+  const { value } = answer
+  const deadband = deadbandOf(item)
+  return { name, timestamp: reading.at, value, quality: 'good', item: text, label, unit, deadband }
+}
+
 /**
  * One result per item. That of a range has an array as value (null where an address is bad) and `elements`, one result per
  * address.
@@ -122,18 +140,9 @@ const arrayOf = (item, elements) => {
 const resultsOf = (items, readings) => {
   let next = 0
   return items.map(item => {
-    const result = item.range
-      ? arrayOf(
-          item,
-          item.elements.map((_, index) => elementOf(item, index, readings[next++]))
-        )
-      : elementOf(item, 0, readings[next++])
-    // it is ours and new: no copy for each of a thousand
-    result.item = item.text
-    result.label = item.label
-    result.unit = item.unit
-    result.deadband = item.tag ? item.tag.deadband : 0
-    return result
+    if (!item.range) return singleOf(item, readings[next++])
+    const elements = item.elements.map((_, index) => elementOf(item, index, readings[next++]))
+    return described(item, arrayOf(item, elements))
   })
 }
 

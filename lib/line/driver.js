@@ -124,8 +124,8 @@ class Driver {
   /** The wire broke: the step on it ends with this error, and its conversation may still say what that means. */
   breakOff(reason) {
     const run = this.#active
-    if (!run) return
     const facts = this.#exchange.abort()
+    if (!run) return
     this.#unanswered(run, facts)
     this.#active = null
     this.#resume(run, copyOf(reason, { sent: facts?.sent ?? false }))
@@ -134,8 +134,9 @@ class Driver {
   /** The run on the wire ends. */
   stop(reason) {
     const run = this.#active
+    const facts = this.#exchange.abort()
     if (!run) return
-    this.#unanswered(run, this.#exchange.abort())
+    this.#unanswered(run, facts)
     this.#active = null
     run.stop(reason)
   }

@@ -30,6 +30,7 @@ class Exchange {
   #job = null
   /** @type {any} */
   #timer = null
+  #firesAt = Infinity
   #lastByteAt = -Infinity
   #sendEnd = -Infinity
 
@@ -230,19 +231,21 @@ class Exchange {
   #arm(due) {
     const job = this.#job
     job.due = due
-    if (this.#timer !== null && job.firesAt <= due) return
+    if (this.#timer !== null && this.#firesAt <= due) return
     this.#clock.clearTimer(this.#timer)
     const now = this.#clock.now()
-    job.firesAt = Math.max(due, now)
+    this.#firesAt = Math.max(due, now)
     this.#timer = this.#clock.setTimer(this.#expired, due - now)
   }
 
   #expired = () => {
     this.#timer = null
     const job = this.#job
+    // of a step that is over
+    if (job?.phase !== 'awaiting') return
     const now = this.#clock.now()
     if (job.due - now > TOLERANCE) return this.#arm(job.due)
-    const lag = now - job.firesAt
+    const lag = now - this.#firesAt
     if (lag > LAG && !job.graced) {
       job.graced = true
       return this.#arm(now + Math.min(lag, MOST_GRACE))
@@ -271,6 +274,8 @@ class Exchange {
    */
   abort() {
     const job = this.#job
+    this.#clock.clearTimer(this.#timer)
+    this.#timer = null
     if (!job) return null
     this.#idle()
     const sent = job.phase === 'awaiting'
@@ -282,10 +287,9 @@ class Exchange {
     return this.#sendEnd + (step.lateAfter ?? step.timeout ?? 0)
   }
 
+  /** The timer stays: the next step, which mostly comes before it, needs none of its own. */
   #idle() {
     this.#silence.stop()
-    this.#clock.clearTimer(this.#timer)
-    this.#timer = null
     this.#job = null
   }
 

@@ -29,10 +29,11 @@ class Recorder {
     this.trace.add({ t: this.#clock.wall(), dir, station, bytes, note })
   }
 
+  /** @param {any} station @param {Buffer} bytes of a step: nobody changes them any more @param {string} label */
   sent(station, bytes, label) {
     this.#sentAt = this.#clock.now()
     this.stats.asked(station, bytes.length)
-    this.#row('out', { station, bytes, note: label })
+    this.trace.keep({ t: this.#clock.wall(), dir: 'out', station, bytes, note: label })
   }
 
   /** @param {{ station: any, step: any, error: any, answer: Buffer, facts: { sent: boolean, ms: number } }} end of a step */
@@ -41,7 +42,7 @@ class Recorder {
     if (error) return this.#failed(station, error, answer)
     if (!step.match) return
     this.stats.answered(station, facts.ms)
-    this.#row('in', { station, bytes: answer, note: '' })
+    this.trace.keep({ t: this.#clock.wall(), dir: 'in', station, bytes: answer, note: '' })
     this.#told.good(station)
   }
 

@@ -24,6 +24,12 @@ class Trace {
     this.#put({ t, dir, station, bytes: copyOf(bytes), note }, false)
   }
 
+  /** Keeps the row as it is. @param {{ t: number, dir: 'out'|'in', station: any, bytes: Buffer, note: string }} row whose bytes nobody changes any more */
+  keep(row) {
+    if (row.bytes.length > MOST_BYTES) row.bytes = copyOf(row.bytes)
+    this.#put(row, false)
+  }
+
   #put(row, grows) {
     if (this.#rows.length < this.#limit) this.#rows.push(row)
     else this.#rows[this.#at] = row

@@ -110,15 +110,15 @@ const messagePer = (results, shape, payloadOf) => {
   const id = shape.id ?? `${device} ${Math.max(...results.map(({ timestamp }) => timestamp))}`
   const count = results.length
   return results.map((result, index) => {
-    const { name, timestamp, quality } = result
+    const { name, timestamp, quality, item, label, unit } = result
+    const payload = payloadOf(result, shape)
+    const parts = { id, index, count, type: 'object', key: name }
     /** @type {Record<string, any>} */
-    const message = { payload: payloadOf(result, shape), topic: name, timestamp, quality, device }
+    const message = { payload, topic: name, timestamp, quality, device, item, parts }
     if (quality === 'bad') message.bad = badOf([result]).bad
     if (simulated) message.simulated = true
-    message.item = result.item
-    if (result.label) message.label = result.label
-    if (result.unit) message.unit = result.unit
-    message.parts = { id, index, count, type: 'object', key: name }
+    if (label) message.label = label
+    if (unit) message.unit = unit
     return message
   })
 }

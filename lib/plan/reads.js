@@ -140,7 +140,7 @@ const planReads = (points, limits) => {
  * @returns {(boolean|number)[]}
  */
 const servedValues = (answer, { at, count, bit }) => {
-  if (bit === undefined) return answer.slice(at, at + count)
+  if (bit === undefined) return count === 1 ? [answer[at]] : answer.slice(at, at + count)
   return Array.from({ length: count }, (_, step) => {
     const place = bit + step
     return Boolean((Number(answer[at + (place >> 4)]) >> (place & 15)) & 1)

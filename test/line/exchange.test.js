@@ -398,6 +398,42 @@ describe('line: sending', () => {
   })
 })
 
+describe('line: one step after the other, and the timer that is left', () => {
+  it('of an answered step ends nothing, whenever the next one comes', async () => {
+    for (let pause = 0; pause < 420; pause += 7) {
+      const { lease, run, clock, wire } = createBench({
+        onQuery: (bytes, w) => w.reply(toy.answer(bytes[1], [bytes[2]], bytes[2]), { after: 150 })
+      })
+      const ask = (nonce, gap = 0) => run(lease.run(() => toy.ask(5, { nonce, timeout: 200 }), { station: 5, gap }))
+      await ask(1)
+      await clock.advance(pause)
+      assert.deepEqual(await ask(2, 100), [2], `${pause} ms later`)
+      wire.onQuery = () => {}
+      assert.equal((await failure(ask(3))).code, 'TIMEOUT')
+      near(clock.now() - wire.queryEnd, 200, `${pause} ms later`)
+    }
+  })
+
+  it('serves the next ones: steps that are answered in time need one timer a timeout, and a line that is closed has none', async () => {
+    const { lease, run, clock } = createBench({
+      onQuery: (bytes, w) => w.reply(toy.answer(bytes[1], [bytes[1]], bytes[2]), { after: 5 })
+    })
+    await run(lease.run(() => toy.ask(5, { timeout: 1000 }), { station: 5 }))
+    const { setTimer } = clock
+    let long = 0
+    clock.setTimer = (fn, ms, ...more) => {
+      if (ms > 500) long++
+      return setTimer(fn, ms, ...more)
+    }
+    const from = clock.now()
+    for (let n = 0; n < 100; n++) await run(lease.run(() => toy.ask(5, { timeout: 1000 }), { station: 5 }))
+    assert.ok(clock.now() - from < 2000, `${clock.now() - from}`)
+    assert.ok(long <= 2, `${long} timers`)
+    await run(lease.release())
+    assert.equal(clock.pending(), 0)
+  })
+})
+
 describe('line: one step, in a process that is late', () => {
   const STEP = { send: Buffer.from('query'), match: toy.answerTo(5, 0), timeout: 200 }
   const start = ({ step = STEP, gap = 0, character = 1, waiting = false, before = '' } = {}) => {

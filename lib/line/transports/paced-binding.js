@@ -66,7 +66,6 @@ function pacedBinding(binding, pace) {
     open: async options => {
       const port = await binding.open(options)
       const plainRead = port.read.bind(port)
-      const plainWrite = port.write.bind(port)
       const close = port.close.bind(port)
       const isPlain = () => typeof port.fd !== 'number' || !port.poller
       port.read = async (buffer, offset, length) => {
@@ -75,10 +74,7 @@ function pacedBinding(binding, pace) {
         if (!port.isOpen) throw canceled()
         return plainRead(buffer, offset, length)
       }
-      port.write = async bytes => {
-        const taken = isPlain() ? 0 : writeNow(port.fd, bytes)
-        if (taken < bytes.length) await plainWrite(bytes.subarray(taken))
-      }
+      port.writeNow = bytes => (isPlain() ? 0 : writeNow(port.fd, bytes))
       port.close = () => {
         pace.stop()
         return close()

@@ -4,6 +4,7 @@ const fs = require('node:fs')
 const { PlcError } = require('../../error')
 const { notAPort } = require('./device-file')
 const { Intake } = require('./intake')
+const { OpenPort } = require('./open-port')
 const { Pace } = require('./pace')
 const { pacedBinding } = require('./paced-binding')
 const { goneError, openError } = require('./port-errors')
@@ -20,8 +21,7 @@ const portOptions = ({ path, baudRate, dataBits, parity, stopBits, flowControl }
   dataBits,
   parity,
   stopBits,
-  ...flow[flowControl],
-  autoOpen: false
+  ...flow[flowControl]
 })
 
 /** What DTR and RTS are to be after opening; null: as the system leaves them (both on). */
@@ -39,7 +39,7 @@ const deviceOf = path => {
   }
 }
 
-/** One port, opened once. serialport 13 through a binding that reads by wire time. */
+/** One port, opened once: the binding of serialport 13, read by wire time. */
 class SerialTransport {
   #settings
   #clock
@@ -65,7 +65,7 @@ class SerialTransport {
     this.#intake = new Intake({
       clock,
       data: bytes => this.#handlers.data(bytes),
-      hold: held => (held ? this.#port.pause() : this.#port.resume())
+      hold: held => this.#port.hold(held)
     })
   }
 
@@ -85,11 +85,13 @@ class SerialTransport {
     this.#state = 'opening'
     this.#device = deviceOf(this.#settings.path)
     const binding = pacedBinding(this.#binding ?? SerialPort.binding, this.#pace)
-    const port = new SerialPort({ ...portOptions(this.#settings), binding: /** @type {any} */ (binding) })
-    this.#port = port
-    port.on('error', error => this.#lose(error))
-    port.on('close', error => this.#lose(error))
-    port.open(error => (error ? this.#notOpened(error) : this.#setSignals()))
+    binding.open(portOptions(this.#settings)).then(
+      port => {
+        this.#port = new OpenPort(port, error => this.#lose(error))
+        this.#setSignals()
+      },
+      error => this.#notOpened(error)
+    )
   }
 
   #notOpened(error) {
@@ -121,7 +123,7 @@ class SerialTransport {
 
   #ready() {
     this.#state = 'open'
-    this.#port.on('data', bytes => {
+    this.#port.read(bytes => {
       if (this.#state === 'open') this.#intake.take(bytes)
     })
     this.#handlers.opened()
@@ -181,7 +183,7 @@ class SerialTransport {
     this.#pace.stop()
     this.#intake.stop()
     this.#writes.clear()
-    if (was === 'open' || (was === 'opening' && this.#port.isOpen)) this.#shut()
+    if (was === 'open' || (was === 'opening' && this.#port?.isOpen)) this.#shut()
   }
 
   #shut() {

@@ -2,6 +2,26 @@
 
 const { performance } = require('node:perf_hooks')
 
+/** So much longer (ms) than asked for does a nap take. */
+const NAP_LATE = 0.08
+/** Nobody else in the process gets on meanwhile: so naps take a tenth of the time at most. */
+const PAUSE = 9
+
+const cell = new Int32Array(new SharedArrayBuffer(4))
+let rested = 0
+
+/** Sleeps without the processor, the last moments with it; not at all, if it has slept too much lately. @param {number} until ms */
+const linger = until => {
+  const from = performance.now()
+  const nap = until - from - NAP_LATE
+  if (nap > 0) {
+    if (from < rested) return
+    Atomics.wait(cell, 0, 0, nap)
+    rested = until + PAUSE * (until - from)
+  }
+  while (performance.now() < until);
+}
+
 /**
  * The clock of the machine. Intervals come from the monotonic clock, so a time server that moves the wall clock by an
  * hour moves no poll. Timers are rounded up to whole ms; Node.js may fire them up to a millisecond early all the same, so
@@ -10,9 +30,7 @@ const { performance } = require('node:perf_hooks')
  */
 const realClock = Object.freeze({
   now: () => performance.now(),
-  linger: until => {
-    while (performance.now() < until);
-  },
+  linger,
   wall: () => Date.now(),
   setTimer: (fn, ms) => setTimeout(fn, Math.max(0, Math.ceil(ms))),
   clearTimer: timer => clearTimeout(timer)
@@ -32,7 +50,8 @@ const timeText = wall => (Math.abs(wall) <= LAST ? new Date(wall).toISOString() 
  * @typedef {object} Clock
  * @property {() => number} now monotonic ms, with fractions
  * @property {() => number} wall epoch ms
- * @property {(until: number) => void} [linger] keeps the process until then: for parts of a ms, which timers do not count. A clock without it is exact
+ * @property {(until: number) => void} [linger] keeps the process until then: for parts of a ms, which timers do not count. Not if it has done so for a
+ *   tenth of the time lately: who calls looks at the time again. A clock without it is exact
  * @property {(fn: () => void, ms: number) => any} setTimer
  * @property {(timer: any) => void} clearTimer any number of times; undefined is allowed
  */

@@ -75,7 +75,7 @@ class Exchange {
   start(step, { gap, station, calm = false, sent, done }) {
     const now = this.#clock.now()
     const turnaround = calm ? this.#hints.turnaroundOf(station) : null
-    const counts = { from: now, due: 0, ours: 0, bytes: 0, reads: 0 }
+    const counts = { from: now, due: 0, ours: 0, bytes: 0, reads: 0, first: null }
     this.#job = { step, station, sent, done, phase: 'gap', written: false, turnaround, ...counts }
     this.#silence.wait(
       gap,
@@ -164,6 +164,7 @@ class Exchange {
       const echo = this.#echo.look(bytes)
       if (echo > 0) {
         this.#link.echoed(this.#rx.take(echo))
+        this.#job.first = null
         continue
       }
       if (echo < 0) return { need: Math.max(step.send.length, this.#echo.expected + step.match(EMPTY).need) }

@@ -16,6 +16,7 @@ const SOON = 5
  * @property {boolean} ours whether they are known to be the answer's
  * @property {number | null} turnaround of the station, ms, where nobody is in a hurry and it is known
  * @property {number} reads so many times bytes came
+ * @property {{ at: number, length: number } | null} first when the first of them were read (ms of the clock), and how many these were
  */
 class Hints {
   #character
@@ -63,10 +64,13 @@ class Hints {
     else this.#link.hint(count, at)
   }
 
-  /** A part of the answer came. @param {Job} job @param {number} length of what has come by now @param {number} lastByteAt ms of the clock */
-  more(job, length, lastByteAt) {
+  /** A part of the answer came. @param {Job} job @param {number} length of what has come by now @param {number} now ms of the clock */
+  more(job, length, now) {
     const count = this.#missing(job, length)
-    this.#link.hint(count, lastByteAt + count * this.#character)
+    const { at, length: begun } = (job.first ??= { at: now, length })
+    // the last of them may have come up to a character ago: we have slept
+    const lastAt = Math.max(at + (length - begun) * this.#character, now - this.#character)
+    this.#link.hint(count, Math.min(lastAt, now) + count * this.#character)
   }
 
   /** @param {Job} job @param {Buffer | null} answer null: it failed; empty: none was awaited @param {number} wait ms until its first byte */

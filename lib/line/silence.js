@@ -5,8 +5,8 @@ const TOLERANCE = 0.001
 /** A silence whose end is seen this late (ms) may hide bytes that nobody has read yet: they get a moment to come in. */
 const LATE = 5
 const BREATH = 5
-/** A timer takes whole ms and fires a little later: for so little (ms) above them, of which most has then gone by, it is not set a whole ms longer. */
-const PART = 0.4
+/** Timers take whole ms: less than one is lingered for. */
+const PART = 1
 
 const never = () => false
 
@@ -47,14 +47,14 @@ class Silence {
   /** Where the time is all but over, that time. */
   #nowOr(free) {
     const now = this.#clock.now()
-    if (!this.#clock.linger || now >= free || free - now > PART) return now
+    if (!this.#clock.linger || now >= free || free - now >= PART) return now
     this.#clock.linger(free)
     return this.#clock.now()
   }
 
   #inTimers(rest) {
     const whole = Math.floor(rest)
-    return this.#clock.linger && whole > 0 && rest - whole <= PART ? whole : rest
+    return this.#clock.linger && whole > 0 ? whole : rest
   }
 
   stop() {

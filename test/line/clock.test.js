@@ -27,6 +27,19 @@ describe('line: the clock of the machine', () => {
     realClock.linger?.(until - 1000)
   })
 
+  it('lingers without the processor, and a tenth of the time at most: others must get on', async () => {
+    await waited(10)
+    const { user, system } = process.cpuUsage()
+    const from = realClock.now()
+    realClock.linger?.(from + 40)
+    const spent = process.cpuUsage({ user, system })
+    assert.ok(realClock.now() - from >= 40)
+    assert.ok((spent.user + spent.system) / 1000 < 20, JSON.stringify(spent))
+    const again = realClock.now() + 1000
+    realClock.linger?.(again)
+    assert.ok(realClock.now() < again, 'not yet again')
+  })
+
   it('a moment as a text, where a date can say it', () => {
     assert.equal(timeText(0), '1970-01-01T00:00:00.000Z')
     assert.equal(timeText(8.64e15), '+275760-09-13T00:00:00.000Z')

@@ -107,6 +107,26 @@ describe('what the transport is told to wait for', () => {
     assert.deepEqual([bench.ended, bench.hints.length], [[25], 2])
   })
 
+  it('what is still missing after a sleep may be there a character sooner: the last byte that has come was not seen coming', async () => {
+    const bench = begin({ usual: 25 })
+    await bench.come(10, answer.subarray(0, 1))
+    await bench.come(34.25, answer.subarray(1, 20))
+    assert.deepEqual(bench.last(), [5, 33.25 + 5])
+    await bench.come(38.25, answer.subarray(20, 24))
+    assert.deepEqual(bench.last(), [1, 38.25], 'at once')
+    await bench.come(38.5, answer.subarray(24))
+    assert.deepEqual(bench.ended, [25])
+  })
+
+  it('by the first byte, where a sleep was short', async () => {
+    const bench = begin({ usual: 25 })
+    await bench.come(10, answer.subarray(0, 4))
+    await bench.come(12.5, answer.subarray(4, 6))
+    assert.deepEqual(bench.last(), [19, 12 + 19])
+    await bench.come(12.75, answer.subarray(6, 7))
+    assert.deepEqual(bench.last(), [18, 12.75 + 18], 'an adapter brings some faster than the wire')
+  })
+
   it('not where it would be seen more than 25 ms later, or half the slack', () => {
     for (const [options, count] of /** @type {[any, number][]} */ ([
       [{ usual: SHORTEST + 25 }, 30],

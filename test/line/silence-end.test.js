@@ -4,7 +4,7 @@ const assert = require('node:assert/strict')
 const { Silence } = require('../../lib/line/silence')
 
 /** A clock of whole ms whose timers are late, as those of the machine; what is set and lingered for is noted. */
-const create = ({ late = 0.1, linger = true } = {}) => {
+const create = ({ late = 0.1, linger = true, lazy = false } = {}) => {
   const bench = { time: 0, quiet: 0, log: /** @type {any[]} */ ([]), timer: /** @type {any} */ (null) }
   const clock = {
     now: () => bench.time,
@@ -17,7 +17,7 @@ const create = ({ late = 0.1, linger = true } = {}) => {
     ...(linger && {
       linger: until => {
         bench.log.push(`until ${until}`)
-        bench.time = until
+        if (!lazy) bench.time = until
       }
     })
   }
@@ -35,7 +35,10 @@ describe('silence before a frame', () => {
   for (const [ms, log, end] of /** @type {[number, any[], number][]} */ ([
     [4, [4], 4.1],
     [3.3, [3, 'until 3.3'], 3.3],
-    [3.6, [3.6], 4.1],
+    [3.6, [3, 'until 3.6'], 3.6],
+    [1.75, [1, 'until 1.75'], 1.75],
+    [0.9, ['until 0.9'], 0.9],
+    [1, [1], 1.1],
     [10.05, [10], 10.1],
     [0.3, ['until 0.3'], 0.3]
   ])) {
@@ -47,6 +50,15 @@ describe('silence before a frame', () => {
       assert.deepEqual([bench.log, over], [log, end])
     })
   }
+
+  it('is waited for by a timer where there is no lingering any more', () => {
+    const bench = create({ lazy: true })
+    let over = -1
+    bench.silence.wait(3.6, () => (over = bench.time))
+    while (bench.timer) bench.fire()
+    assert.deepEqual(bench.log, [3, 'until 3.6', 0.5])
+    assert.ok(Math.abs(over - 4.2) < 0.001, `${over}`)
+  })
 
   it('is never shorter where a timer comes early', () => {
     const bench = create({ late: -0.9 })

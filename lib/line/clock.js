@@ -4,20 +4,25 @@ const { performance } = require('node:perf_hooks')
 
 /** So much longer (ms) than asked for does a nap take. */
 const NAP_LATE = 0.08
-/** Nobody else in the process gets on meanwhile: so naps take a tenth of the time at most. */
-const PAUSE = 9
+/** Nobody else in the process gets on meanwhile: so naps take such a part of the time at most, … */
+const SHARE = 0.1
+/** … and together so much (ms) when there was none for long. */
+const MOST_NAPS = 2
 
 const cell = new Int32Array(new SharedArrayBuffer(4))
-let rested = 0
+let credit = MOST_NAPS
+let countedAt = 0
 
 /** Sleeps without the processor, the last moments with it; not at all, if it has slept too much lately. @param {number} until ms */
 const linger = until => {
   const from = performance.now()
   const nap = until - from - NAP_LATE
   if (nap > 0) {
-    if (from < rested) return
+    credit = Math.min(MOST_NAPS, credit + (from - countedAt) * SHARE)
+    countedAt = from
+    if (credit < nap) return
+    credit -= nap
     Atomics.wait(cell, 0, 0, nap)
-    rested = until + PAUSE * (until - from)
   }
   while (performance.now() < until);
 }

@@ -4,6 +4,8 @@
 const LEAST = 1
 /** They fire so much (ms) later than asked for. */
 const LATE = 0.3
+/** What is lingered for is there by then, or so much later (ms). */
+const MARGIN = 0.03
 /** To give up a wait that is under way is worth it for so much (ms). */
 const LONG = 2
 
@@ -11,6 +13,7 @@ const LONG = 2
 class Pace {
   #clock
   #at = -Infinity
+  #once = false
   /** @type {(() => void) | null} */
   #wake = null
   /** @type {(() => void) | null} */
@@ -21,9 +24,10 @@ class Pace {
     this.#clock = clock
   }
 
-  /** @param {number} at ms of the clock @param {boolean} [once] nobody asks when the first byte comes */
+  /** @param {number} at ms of the clock @param {boolean} [once] nobody asks when the first byte comes, nor for a part of a ms */
   hint(at, once = false) {
     this.#at = at
+    this.#once = once
     if (once && at - this.#clock.now() >= LONG) this.#giveUp?.()
   }
 
@@ -34,16 +38,34 @@ class Pace {
 
   /** @returns {Promise<void> | null} null: it is time */
   sleep() {
-    // the nearest whole ms; timers are a little late, so rather the one before. Of what is still missing then the descriptor tells
-    const wait = Math.round(this.#at - this.#clock.now() - LATE)
-    if (!(wait >= LEAST)) return null
-    return new Promise(resolve => {
+    const { linger } = this.#clock
+    return this.#once || !linger ? this.#about() : this.#until(this.#at + MARGIN, linger)
+  }
+
+  /** The nearest whole ms; timers are a little late, so rather the one before. Of what is still missing then the descriptor tells. */
+  #about() {
+    return this.#timer(Math.round(this.#at - this.#clock.now() - LATE), () => {})
+  }
+
+  /** Whole ms by a timer, the rest without one. */
+  #until(at, linger) {
+    return this.#timer(Math.floor(at - this.#clock.now()), () => {
+      if (at - this.#clock.now() < LEAST) linger(at)
+    })
+  }
+
+  #timer(ms, last) {
+    if (!(ms >= LEAST)) return null
+    return new Promise((/** @type {(value: void) => void} */ resolve) => {
       const wake = () => {
         this.#wake = null
         this.#clock.clearTimer(timer)
         resolve()
       }
-      const timer = this.#clock.setTimer(wake, wait)
+      const timer = this.#clock.setTimer(() => {
+        last()
+        wake()
+      }, ms)
       this.#wake = wake
     })
   }

@@ -1,0 +1,96 @@
+'use strict'
+
+const assert = require('node:assert/strict')
+const { Pace } = require('../../../lib/line/transports/pace')
+
+/** A clock of whole ms whose timers are late, as those of the machine; what is set and lingered for is noted. */
+const create = ({ late = 0.1, lazy = false } = {}) => {
+  const bench = { time: 0, log: /** @type {any[]} */ ([]), timer: /** @type {any} */ (null) }
+  const clock = {
+    now: () => bench.time,
+    wall: () => 0,
+    setTimer: (fn, ms) => {
+      bench.log.push(ms)
+      bench.timer = { fn, at: bench.time + ms + late }
+      return bench.timer
+    },
+    clearTimer: timer => {
+      if (timer === bench.timer) bench.timer = null
+    },
+    linger: until => {
+      bench.log.push(`until ${until.toFixed(2)}`)
+      if (!lazy) bench.time = until
+    }
+  }
+  const pace = new Pace(clock)
+  const fire = () => {
+    const { fn, at } = bench.timer
+    bench.time = at
+    fn()
+  }
+  return Object.assign(bench, { pace, fire })
+}
+
+describe('when the next bytes can be there', () => {
+  for (const [ms, log, end] of /** @type {[number, any[], string][]} */ ([
+    [25.4, [25, 'until 25.43'], '25.43'],
+    [25.9, [25, 'until 25.93'], '25.93'],
+    [25.02, [25, 'until 25.05'], '25.10'],
+    [1.5, [1, 'until 1.53'], '1.53']
+  ])) {
+    it(`in ${ms} ms: a timer, and what is left of a ms without one`, async () => {
+      const bench = create()
+      bench.pace.hint(ms)
+      const sleep = bench.pace.sleep()
+      bench.fire()
+      await sleep
+      const [whole, rest] = bench.log
+      assert.deepEqual([whole, rest], log)
+      assert.equal(Math.max(bench.time, whole + 0.1).toFixed(2), end)
+      assert.equal(bench.timer, null)
+    })
+  }
+
+  it('within a ms: nobody sleeps', () => {
+    const bench = create()
+    for (const ms of [0.9, 0, -3, -Infinity]) {
+      bench.pace.hint(ms)
+      assert.equal(bench.pace.sleep(), null)
+    }
+    assert.deepEqual(bench.log, [])
+  })
+
+  it('behind a timer that came far too early nobody lingers for long', async () => {
+    const bench = create({ late: -5 })
+    bench.pace.hint(25.4)
+    const sleep = bench.pace.sleep()
+    bench.fire()
+    await sleep
+    assert.deepEqual([bench.log, bench.time], [[25], 20])
+  })
+
+  it('a ms more or less, where nobody asks when the first byte comes', async () => {
+    for (const [ms, whole] of [
+      [25.4, 25],
+      [25.9, 26],
+      [1.7, 1]
+    ]) {
+      const bench = create()
+      bench.pace.hint(ms, true)
+      const sleep = bench.pace.sleep()
+      bench.fire()
+      await sleep
+      assert.deepEqual(bench.log, [whole], `${ms}`)
+    }
+  })
+
+  it('who sleeps is woken at the end, without a timer that is left', async () => {
+    const bench = create()
+    bench.pace.hint(25.4)
+    const sleep = bench.pace.sleep()
+    bench.pace.stop()
+    await sleep
+    assert.deepEqual([bench.log, bench.timer], [[25], null])
+    assert.equal(bench.pace.sleep(), null)
+  })
+})

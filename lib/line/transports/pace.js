@@ -4,8 +4,8 @@
 const LEAST = 1
 /** They fire so much (ms) later than asked for. */
 const LATE = 0.3
-/** What is lingered for is there by then, or so much later (ms). */
-const MARGIN = 0.03
+/** The byte from which the time of the others is counted was seen so much (ms) after it came. */
+const SEEN = 0.2
 /** To give up a wait that is under way is worth it for so much (ms). */
 const LONG = 2
 
@@ -39,7 +39,7 @@ class Pace {
   /** @returns {Promise<void> | null} null: it is time */
   sleep() {
     const { linger } = this.#clock
-    return this.#once || !linger ? this.#about() : this.#until(this.#at + MARGIN, linger)
+    return this.#once || !linger ? this.#about() : this.#until(this.#at - SEEN, linger)
   }
 
   /** The nearest whole ms; timers are a little late, so rather the one before. Of what is still missing then the descriptor tells. */

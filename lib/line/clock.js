@@ -1,31 +1,9 @@
 'use strict'
 
 const { performance } = require('node:perf_hooks')
-
-/** So much longer (ms) than asked for does a nap take. */
-const NAP_LATE = 0.08
-/** Nobody else in the process gets on meanwhile: so naps take such a part of the time at most, … */
-const SHARE = 0.1
-/** … and together so much (ms) when there was none for long. */
-const MOST_NAPS = 2
+const { createLinger } = require('./linger')
 
 const cell = new Int32Array(new SharedArrayBuffer(4))
-let credit = MOST_NAPS
-let countedAt = 0
-
-/** Sleeps without the processor, the last moments with it; not at all, if it has slept too much lately. @param {number} until ms */
-const linger = until => {
-  const from = performance.now()
-  const nap = until - from - NAP_LATE
-  if (nap > 0) {
-    credit = Math.min(MOST_NAPS, credit + (from - countedAt) * SHARE)
-    countedAt = from
-    if (credit < nap) return
-    credit -= nap
-    Atomics.wait(cell, 0, 0, nap)
-  }
-  while (performance.now() < until);
-}
 
 /**
  * The clock of the machine. Intervals come from the monotonic clock, so a time server that moves the wall clock by an
@@ -35,7 +13,7 @@ const linger = until => {
  */
 const realClock = Object.freeze({
   now: () => performance.now(),
-  linger,
+  linger: createLinger({ now: () => performance.now(), nap: ms => void Atomics.wait(cell, 0, 0, ms) }),
   wall: () => Date.now(),
   setTimer: (fn, ms) => setTimeout(fn, Math.max(0, Math.ceil(ms))),
   clearTimer: timer => clearTimeout(timer)

@@ -16,7 +16,7 @@ const hungUp = () => new Error('the port has hung up')
 class OpenPort {
   #port
   #lost
-  /** @type {((bytes: Buffer) => void) | null} */
+  /** @type {any} */
   #data = null
   #buffer = Buffer.allocUnsafeSlow(SIZE)
   #used = 0
@@ -76,7 +76,7 @@ class OpenPort {
     if (!this.isOpen) return
     const from = this.#used
     this.#used += bytesRead
-    this.#data?.(this.#buffer.subarray(from, this.#used))
+    this.#data(this.#buffer.subarray(from, this.#used))
     this.#next()
   }
 

@@ -123,25 +123,21 @@ class SerialTransport {
 
   #ready() {
     this.#state = 'open'
-    this.#port.read(bytes => {
-      if (this.#state === 'open') this.#intake.take(bytes)
-    })
+    this.#port.read(bytes => this.#intake.take(bytes))
     this.#handlers.opened()
   }
 
-  /** The port closed or failed by itself; both may be told, and twice. */
+  /** The port failed by itself, and is closed by now; or its name leads elsewhere. */
   #lose(error) {
     const was = this.#state
-    this.#state = 'closed'
+    this.#state = 'closing'
     this.#pace.stop()
     this.#intake.stop()
-    this.#clock.clearTimer(this.#delay)
     const gone = goneError(error, this.#settings.path)
     for (const done of [...this.#writes]) done(gone)
     if (was === 'open') this.#handlers.closed(gone)
-    if (was === 'opening') this.#handlers.failed(gone)
-    if (this.#port.isOpen) this.#port.close(() => this.#tellClosed())
-    else if (!this.#port.closing) this.#tellClosed()
+    if (this.#port.isOpen) this.#shut()
+    else if (!this.#port.closing) this.#free()
   }
 
   write(bytes, done) {
@@ -183,15 +179,16 @@ class SerialTransport {
     this.#pace.stop()
     this.#intake.stop()
     this.#writes.clear()
-    if (was === 'open' || (was === 'opening' && this.#port?.isOpen)) this.#shut()
+    this.#shut()
   }
 
   #shut() {
-    if (!this.#port.isOpen) return
-    this.#port.close(() => {
-      this.#state = 'closed'
-      this.#tellClosed()
-    })
+    if (this.#port?.isOpen) this.#port.close(() => this.#free())
+  }
+
+  #free() {
+    this.#state = 'closed'
+    this.#tellClosed()
   }
 
   #tellClosed() {

@@ -84,6 +84,18 @@ describe('when the next bytes can be there', () => {
     }
   })
 
+  it('who waits for the first byte is told to sleep where that is worth it: from two ms on', () => {
+    const bench = create()
+    let givenUp = 0
+    bench.pace.watch(() => givenUp++)
+    bench.time = 1000
+    for (const ms of [1.9, -2000]) bench.pace.hint(1000 + ms, true)
+    bench.pace.hint(1030)
+    assert.equal(givenUp, 0)
+    bench.pace.hint(1002, true)
+    assert.equal(givenUp, 1)
+  })
+
   it('who sleeps is woken at the end, without a timer that is left', async () => {
     const bench = create()
     bench.pace.hint(25.4)

@@ -380,6 +380,31 @@ describe('serial transport: a request that was not answered asks whether the por
     })
   }
 
+  for (const [what, happens] of /** @type {[string, (bench: any) => void][]} */ ([
+    ['while it closes because it failed', ({ binding }) => binding.lose()],
+    ['and it is asked twice', ({ transport }) => transport.check()]
+  ])) {
+    it(`the answer comes ${what}: told once; and a close is told when the port is free`, async () => {
+      const close = pending()
+      const bench = create({ close: () => close.promise })
+      bench.open()
+      await turns()
+      bench.transport.check()
+      const first = answer
+      happens(bench)
+      await turns()
+      for (const say of [first, answer]) say(Object.assign(new Error('ENOENT'), { code: 'ENOENT' }))
+      let ends = 0
+      bench.transport.close(() => ends++)
+      await turns()
+      const said = ['opened', 'closed PORT_GONE']
+      assert.deepEqual([ends, bench.told, bench.binding.log], [0, said, ['open', 'close']])
+      close.resolve()
+      await turns()
+      assert.deepEqual([ends, bench.told, bench.binding.log], [1, said, ['open', 'close']])
+    })
+  }
+
   it('only of a port that is open, and whose name led to a device', async () => {
     const early = create()
     early.transport.check()

@@ -13,8 +13,8 @@ const { startFarEnd } = require('../far-end')
 const TAGS = 100
 const INTERVAL = 100 // ms; the line needs 71
 const BAUD = 38400
-const SETTLE = 6000
-const ROUNDS = 4
+const SETTLE = 60000 // a gateway runs for months: what its JavaScript takes until the engine has translated it is not what a message costs
+const ROUNDS = 6
 const ROUND = 6000
 const MOST = 1.3
 

@@ -118,6 +118,13 @@ describe('what the transport is told to wait for', () => {
     assert.deepEqual(bench.ended, [25])
   })
 
+  it('by the first byte, and by the time that a character takes', async () => {
+    const bench = begin({ usual: 25, character: 2 })
+    await bench.come(20, answer.subarray(0, 1))
+    await bench.come(43, answer.subarray(1, 12))
+    assert.deepEqual(bench.last(), [13, 20 + 11 * 2 + 13 * 2])
+  })
+
   it('by the first byte, where a sleep was short', async () => {
     const bench = begin({ usual: 25 })
     await bench.come(10, answer.subarray(0, 4))

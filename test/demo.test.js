@@ -6,6 +6,7 @@ const assert = require('node:assert/strict')
 const { spawn } = require('node:child_process')
 const { once } = require('node:events')
 const fs = require('node:fs')
+const net = require('node:net')
 const os = require('node:os')
 const path = require('node:path')
 
@@ -35,6 +36,21 @@ describe('demo flow', () => {
       wrong.map(({ info }) => list.exec(info)?.[0]),
       []
     )
+  })
+})
+
+describe('demo broker', () => {
+  const { startBroker } = require('../examples/demo/broker')
+  const { freePort } = require('../examples/demo/ports')
+
+  it('ends, also where somebody has connected and said nothing yet', async () => {
+    const port = await freePort(0)
+    const broker = await startBroker(port)
+    const silent = net.connect(port, '127.0.0.1')
+    await once(silent, 'connect')
+    const gone = once(silent, 'close')
+    await broker.close()
+    await gone
   })
 })
 

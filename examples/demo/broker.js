@@ -11,13 +11,20 @@ const { HOST } = require('./ports')
  */
 async function startBroker(port) {
   const broker = await Aedes.createBroker()
-  const server = net.createServer(broker.handle)
+  const sockets = new Set()
+  const server = net.createServer(socket => {
+    sockets.add(socket)
+    socket.once('close', () => sockets.delete(socket))
+    broker.handle(socket)
+  })
   await new Promise((resolve, reject) => {
     server.once('error', reject)
     server.listen(port, HOST, () => resolve(undefined))
   })
   const close = async () => {
     await new Promise(resolve => broker.close(() => resolve(undefined)))
+    // who has only connected is no client of the broker yet
+    for (const socket of sockets) socket.destroy()
     await new Promise(resolve => server.close(resolve))
   }
   return { url: `mqtt://${HOST}:${port}`, close }

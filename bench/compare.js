@@ -12,7 +12,7 @@ const STATION = 11
 const TURNAROUND = 5
 const WARM_UP = 3
 /** Before anything is measured, on a line that is as fast as it gets: who reads day and night has code that the engine has translated. */
-const RUN_IN = { baudRate: 115200, turnaround: 1, requests: 1000 }
+const RUN_IN = { baudRate: 115200, turnaround: 1 }
 
 const CHARACTER = 10000 / BAUD
 /** Silence before a request, which RTU asks for (MODBUS over serial line, 2.5.1.1) and the peers do not keep. */
@@ -21,12 +21,11 @@ const SILENCE = 3.5 * CHARACTER
 const stations = [{ device: 'chino', station: STATION }]
 
 /** Every client as often. */
-const runIn = async (all, { chunk, count }) => {
-  const { requests, ...line } = RUN_IN
-  const far = await startFarEnd({ stations, ...line, quiet: true, chunk })
+const runIn = async (all, { chunk, count, requests }) => {
+  const far = await startFarEnd({ stations, ...RUN_IN, quiet: true, chunk })
   try {
     for (const client of Object.values(all)) {
-      const { run, close } = await client({ link: far.link, baudRate: line.baudRate, station: STATION, count })
+      const { run, close } = await client({ link: far.link, baudRate: RUN_IN.baudRate, station: STATION, count })
       await run(requests).finally(close)
     }
   } finally {
@@ -47,12 +46,13 @@ const measure = async (client, link, { count, requests }) => {
 
 /**
  * All clients in turn, some rounds; the best of each: what else the machine does only adds.
- * @param {{ chunk: number, count: number, requests: number, rounds: number }} options chunk: bytes that arrive at once; requests of a round
+ * @param {{ chunk: number, count: number, before: number, requests: number, rounds: number }} options chunk: bytes that arrive at once; before:
+ *   requests before anything is measured; requests: of a round
  * @returns {Promise<Record<string, { cpu: number, cycle: number }>>} ms of one request, by client
  */
-const compare = async ({ chunk, rounds, ...each }) => {
+const compare = async ({ chunk, rounds, before, ...each }) => {
   const all = clients()
-  await runIn(all, { chunk, count: each.count })
+  await runIn(all, { chunk, count: each.count, requests: before })
   const far = await startFarEnd({ stations, baudRate: BAUD, turnaround: TURNAROUND, quiet: true, chunk })
   const seen = Object.fromEntries(Object.keys(all).map(name => [name, /** @type {any[]} */ ([])]))
   try {
@@ -69,7 +69,7 @@ const compare = async ({ chunk, rounds, ...each }) => {
 
 /**
  * Rows of one case.
- * @param {{ chunk: number, count: number, requests: number, rounds: number, most: Record<string, number> }} each most: that our processor time may be
+ * @param {{ chunk: number, count: number, before: number, requests: number, rounds: number, most: Record<string, number> }} each most: that our processor time may be
  *   of the peer's, by peer
  */
 async function* comparison({ most, ...each }) {

@@ -4,8 +4,22 @@
 const { comparison } = require('../compare')
 
 const CASES = [
-  { chunk: 16, count: 10, requests: 30, rounds: 8, most: { 'modbus-serial': 1, jsmodbus: 1, pymodbus: 1 } },
-  { chunk: 16, count: 125, requests: 6, rounds: 4, most: { 'modbus-serial': 0.5, jsmodbus: 0.5, pymodbus: 1 } }
+  {
+    chunk: 16,
+    count: 10,
+    before: 1000,
+    requests: 30,
+    rounds: 5,
+    most: { 'modbus-serial': 1, jsmodbus: 1, pymodbus: 1 }
+  },
+  {
+    chunk: 16,
+    count: 125,
+    before: 200,
+    requests: 6,
+    rounds: 3,
+    most: { 'modbus-serial': 0.5, jsmodbus: 0.5, pymodbus: 1 }
+  }
 ]
 
 async function* rows() {

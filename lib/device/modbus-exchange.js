@@ -95,4 +95,22 @@ const meaning = (error, { query, station, frame, name }) => {
   return new PlcError('BAD_ANSWER', { station, reason: String(error.message), cause: error })
 }
 
-module.exports = { exchange }
+/** @type {WeakMap<Query, { station: number, made: ReturnType<typeof exchange> }>} */
+const kept = new WeakMap()
+
+/**
+ * As {@link exchange}. A read that is polled asks the same again and again: while its query is the same object, which nobody may change then, it
+ * keeps its client, which knows no other one.
+ * @param {Query} query
+ * @param {number} station
+ */
+const exchangeOf = (query, station) => {
+  if (!functionOf(query.fn)?.reads) return exchange(query, station)
+  const known = kept.get(query)
+  if (known?.station === station) return known.made
+  const made = exchange(query, station)
+  kept.set(query, { station, made })
+  return made
+}
+
+module.exports = { exchange, exchangeOf }

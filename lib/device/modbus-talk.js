@@ -6,7 +6,7 @@ const { readDialog, writeDialog } = require('../codec/modbus/dialog')
 const { readFunction, writeFunction } = require('../codec/modbus/functions')
 const { announced } = require('./announced')
 const { Clearing } = require('./modbus-clearing')
-const { exchange } = require('./modbus-exchange')
+const { exchangeOf } = require('./modbus-exchange')
 
 /**
  * Requests of a MODBUS station over the line: absolute addresses -> what goes out, by the functions that its configuration chooses. What must
@@ -29,10 +29,24 @@ const gapOf = ({ framing, sendWait }, character) =>
 const KINDS = { readBits: 'bit', readWords: 'word', writeBits: 'bit', writeWords: 'word', writeBitsOfWord: 'word' }
 const wireOf = ({ ask, base }) => placeOf(KINDS[ask], base)
 
-/** The frame that reads, as a query of the codec. */
-const readQuery = request => {
+/**
+ * What reads, made once for each request of a plan.
+ * @typedef {{ query: any, name: string }} Reading query: of the codec; name: the same for equal requests
+ * @type {WeakMap<any, Reading>}
+ */
+const readings = new WeakMap()
+
+/** @param {any} request @returns {Reading} */
+const readingOf = request => {
+  let reading = readings.get(request)
+  if (reading === undefined) readings.set(request, (reading = describe(request)))
+  return reading
+}
+
+const describe = request => {
+  const { ask, base, count } = request
   const { table, wire } = wireOf(request)
-  return /** @type {any} */ ({ fn: readFunction(table), base: wire, count: request.count })
+  return { query: { fn: readFunction(table), base: wire, count }, name: `${ask} ${base} ${count}` }
 }
 
 const isSingle = (chosen, count) => chosen === '05' || chosen === '06' || (chosen === 'auto' && count === 1)
@@ -82,8 +96,8 @@ class ModbusTalk {
    */
   async read(request, { priority }) {
     const { station, deadline, framing } = this.#settings
-    const key = `modbus ${framing} ${request.ask} ${request.base} ${request.count}`
-    const label = `${request.ask} ${request.base} ${request.count}`
+    const label = readingOf(request).name
+    const key = `modbus ${framing} ${label}`
     const make = () => ({ request, dialog: this.#cleared(this.#reading(request)) })
     return this.#health.run(make, { station, priority, key, deadline, label, request })
   }
@@ -118,16 +132,15 @@ class ModbusTalk {
   }
 
   *#reading(request, attempts = this.#settings.attempts) {
-    const query = readQuery(request)
+    const { query, name } = readingOf(request)
     const { units } = this.#settings
-    const known = `${query.fn} ${query.base} ${query.count}`
     const { exact } = this.#memory
-    const unit = exact.has(known) ? 1 : units[query.fn]
+    const unit = exact.has(name) ? 1 : units[query.fn]
     const facts = { exact: false }
     const result = yield* this.#counted(readDialog(query, { ...this.#options(), attempts, unit, facts }))
     if (facts.exact) {
       if (exact.size >= MOST_EXACT) exact.clear()
-      exact.add(known)
+      exact.add(name)
     }
     return result.values
   }
@@ -157,7 +170,7 @@ class ModbusTalk {
   #options() {
     const { station, framing, timeout, attempts } = this.#settings
     const gap = this.#gap
-    return { station, protocol: framing, timeout, attempts, gap, exchange }
+    return { station, protocol: framing, timeout, attempts, gap, exchange: exchangeOf }
   }
 
   *#counted(dialog) {

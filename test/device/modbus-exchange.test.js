@@ -2,7 +2,7 @@
 
 const assert = require('node:assert/strict')
 const ModbusRTU = require('modbus-serial')
-const { exchange } = require('../../lib/device/modbus-exchange')
+const { exchange, exchangeOf } = require('../../lib/device/modbus-exchange')
 const { bench } = require('./chino-bench')
 const { rtu } = require('./slave')
 
@@ -68,6 +68,38 @@ describe('one exchange by modbus-serial', () => {
     const { send, read } = exchange({ fn: 15, base: 0x13, values }, 0x11)
     assert.deepEqual(send, rtu(bytes('11 0F 0013 000A 02 CD01')))
     assert.equal(read(rtu(bytes('11 0F 0013 000A'))), true)
+  })
+
+  it('a read that comes again keeps its client: answers, exceptions and damage one after the other, each for itself', () => {
+    for (const [request, query, answer, values] of EXAMPLES) {
+      const first = exchangeOf(query, 0x11)
+      assert.equal(first.send.toString('hex'), bytes(request).toString('hex'))
+      assert.equal(exchangeOf(query, 0x11) === first, query.fn < 5, `${query.fn}`)
+      assert.notEqual(exchangeOf({ ...query }, 0x11), first)
+      const good = bytes(answer)
+      const damaged = Buffer.from(good)
+      damaged[3] ^= 1
+      for (let n = 0; n < 3; n++) {
+        const { read } = exchangeOf(query, 0x11)
+        assert.deepEqual(read(good), values)
+        assert.equal(
+          codeOf(() => read(rtu([0x11, query.fn | 0x80, 2]))),
+          'MODBUS_ILLEGAL_ADDRESS'
+        )
+        assert.match(
+          codeOf(() => read(damaged)),
+          /^(CRC_ERROR|BAD_ANSWER)$/
+        )
+      }
+      const other = exchangeOf(query, 0x12)
+      assert.equal(other.send[0], 0x12)
+      assert.notEqual(
+        codeOf(() => other.read(good)),
+        'none',
+        'of another station'
+      )
+      assert.equal(exchangeOf(query, 0x11).send[0], 0x11)
+    }
   })
 
   it('maximum sizes', () => {

@@ -1,4 +1,5 @@
 'use strict'
+const { remembered } = require('./remembered')
 
 /**
  * What is known of a station's health, as plain data in the line's memory of it: over redeploys, and for all devices of the station. Pure.
@@ -37,21 +38,11 @@ const healthOf = memory => {
   return memory.health
 }
 
-/** Those of a plan come again and again. @type {WeakMap<Request, string>} */
-const keys = new WeakMap()
-
-/** @param {Request} request @returns {string} equal for equal requests, as far as it matters here */
-const keyOf = request => {
-  let key = keys.get(request)
-  if (key === undefined) keys.set(request, (key = describe(request)))
-  return key
-}
-
-/** @param {Request} request */
-const describe = ({ ask, base, count, addresses, writes, values }) => {
+/** @type {(request: Request) => string} equal for equal requests, as far as it matters here */
+const keyOf = remembered(({ ask, base, count, addresses, writes, values }) => {
   const places = addresses ?? writes
   return `${ask} ${base ?? places?.[0]?.address} ${count ?? places?.length ?? values?.length}`
-}
+})
 
 const READS = Object.freeze({ writeBits: 'readBits', writeWords: 'readWords', writeBitsOfWord: 'readWords' })
 

@@ -7,6 +7,7 @@ const { readFunction, writeFunction } = require('../codec/modbus/functions')
 const { announced } = require('./announced')
 const { Clearing } = require('./modbus-clearing')
 const { exchangeOf } = require('./modbus-exchange')
+const { remembered } = require('./remembered')
 
 /**
  * Requests of a MODBUS station over the line: absolute addresses -> what goes out, by the functions that its configuration chooses. What must
@@ -29,25 +30,12 @@ const gapOf = ({ framing, sendWait }, character) =>
 const KINDS = { readBits: 'bit', readWords: 'word', writeBits: 'bit', writeWords: 'word', writeBitsOfWord: 'word' }
 const wireOf = ({ ask, base }) => placeOf(KINDS[ask], base)
 
-/**
- * What reads, made once for each request of a plan.
- * @typedef {{ query: any, name: string }} Reading query: of the codec; name: the same for equal requests
- * @type {WeakMap<any, Reading>}
- */
-const readings = new WeakMap()
-
-/** @param {any} request @returns {Reading} */
-const readingOf = request => {
-  let reading = readings.get(request)
-  if (reading === undefined) readings.set(request, (reading = describe(request)))
-  return reading
-}
-
-const describe = request => {
+/** What reads a request of a plan: the query of the codec, and a name that is the same for equal requests. */
+const readingOf = remembered((/** @type {any} */ request) => {
   const { ask, base, count } = request
   const { table, wire } = wireOf(request)
-  return { query: { fn: readFunction(table), base: wire, count }, name: `${ask} ${base} ${count}` }
-}
+  return { query: /** @type {any} */ ({ fn: readFunction(table), base: wire, count }), name: `${ask} ${base} ${count}` }
+})
 
 const isSingle = (chosen, count) => chosen === '05' || chosen === '06' || (chosen === 'auto' && count === 1)
 

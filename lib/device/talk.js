@@ -4,6 +4,7 @@ const { readDialog, writeDialog } = require('../codec/nx/dialog')
 const { realClock } = require('../line')
 const { announced } = require('./announced')
 const { createMasterWatch } = require('./master-watch')
+const { remembered } = require('./remembered')
 const { RepeatWatch } = require('./repeat-watch')
 
 /**
@@ -189,19 +190,10 @@ class Talk {
   }
 }
 
-/** Those of a plan come again and again. @type {WeakMap<any, string>} */
-const keys = new WeakMap()
-
 /** Equal for equal queries: the same read that still waits is not queued twice. */
-const keyOf = query => {
-  let key = keys.get(query)
-  if (key === undefined) keys.set(query, (key = describe(query)))
-  return key
-}
-
-const describe = query => {
+const keyOf = remembered((/** @type {any} */ query) => {
   if (query.ask !== 'readMixed') return `${query.ask} ${query.base} ${query.count}`
   return `readMixed ${query.addresses.map(({ kind, address }) => `${kind[0]}${address}`).join(' ')}`
-}
+})
 
 module.exports = { Talk }

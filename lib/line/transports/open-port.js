@@ -11,7 +11,7 @@ const hungUp = () => new Error('the port has hung up')
 
 /**
  * A port that a binding of serialport has opened: read on and on, written one after the other, closed once. The binding itself has one read and one
- * write; the streams of serialport cost more processor than all else of a short request.
+ * write; the streams of serialport between would only take processor time.
  */
 class OpenPort {
   #port

@@ -288,7 +288,7 @@ describe('serial transport over other bindings', () => {
     })
   }
 
-  it('tells once that the port is gone, though both error and close come', async () => {
+  it('tells once that the port is gone, to the write that failed and to the line', async () => {
     binding.createPort('/dev/mock')
     let inner
     const watching = { open: async options => (inner = await binding.open(options)) }

@@ -7,9 +7,9 @@ const CASES = [
   {
     chunk: 16,
     count: 10,
-    before: 1000,
-    requests: 30,
-    rounds: 5,
+    before: 2500,
+    requests: 20,
+    rounds: 15,
     most: { 'modbus-serial': 1, jsmodbus: 1, pymodbus: 1 }
   },
   {
@@ -17,7 +17,7 @@ const CASES = [
     count: 125,
     before: 200,
     requests: 6,
-    rounds: 3,
+    rounds: 9,
     most: { 'modbus-serial': 0.5, jsmodbus: 0.5, pymodbus: 1 }
   }
 ]

@@ -7,9 +7,9 @@ const CASES = [
   {
     chunk: 1,
     count: 10,
-    before: 1000,
-    requests: 30,
-    rounds: 5,
+    before: 2500,
+    requests: 20,
+    rounds: 15,
     most: { 'modbus-serial': 0.35, jsmodbus: 0.35, pymodbus: 1 }
   },
   {
@@ -17,7 +17,7 @@ const CASES = [
     count: 125,
     before: 200,
     requests: 6,
-    rounds: 3,
+    rounds: 9,
     most: { 'modbus-serial': 0.1, jsmodbus: 0.1, pymodbus: 1 }
   }
 ]

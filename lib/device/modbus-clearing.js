@@ -47,8 +47,11 @@ class Clearing {
   }
 
   /** A conversation, after each of whose unanswered steps the station is asked by 08. @param {Generator<any, any, Buffer>} dialog @param {number} gap ms */
-  *watch(dialog, gap) {
-    if (!this.#settings.probe08 || this.#settings.station === 0) return yield* dialog
+  watch(dialog, gap) {
+    return this.#settings.probe08 && this.#settings.station !== 0 ? this.#watched(dialog, gap) : dialog
+  }
+
+  *#watched(dialog, gap) {
     let next = dialog.next()
     try {
       while (!next.done) {
@@ -73,14 +76,16 @@ class Clearing {
     if (!step.match) return yield step
     let heardSelf = false
     let alone = true
-    const match = bytes => {
+    const { match } = step
+    // the step itself is changed: a conversation makes a new one each time
+    step.match = bytes => {
       heardSelf ||= Buffer.from(bytes).includes(step.send)
-      const verdict = step.match(bytes)
+      const verdict = match(bytes)
       // what is stepped over may be ourselves, damaged
       if (verdict.skip > 0) alone = false
       return verdict
     }
-    const answer = yield { ...step, match }
+    const answer = yield step
     if (heardSelf) this.#memory.heardSelf = true
     else if (alone && !answer.equals(step.send)) this.#memory.heardSelf = false
     return answer

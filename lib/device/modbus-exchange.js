@@ -52,7 +52,7 @@ const createPort = () => {
  * @param {Query} query
  * @param {number} station 1..247; 0: broadcast, writes only
  * @param {{ name?: (query: Query) => string }} [options] how errors call the addresses of the request
- * @returns {{ send: Buffer, read: (frame: Buffer) => any }} `send`: RTU frame; `read`: RTU frame -> the values that were asked for, true for a
+ * @returns {{ send: Buffer, read: (frame: Buffer) => any, kept?: object }} `send`: RTU frame; `read`: RTU frame -> the values that were asked for, true for a
  *   write. Throws MODBUS_… for an exception, CRC_ERROR, BAD_ANSWER
  * @throws {PlcError} FUNCTION_REFUSED, BAD_COUNT, BAD_ADDRESS, BAD_VALUE
  */
@@ -63,23 +63,23 @@ const exchange = (query, station, { name = describeQuery } = {}) => {
   client.open(() => {})
   /** @type {{ error?: any, result?: any } | null} */
   let end = null
+  // it looks at station, function, length and checksum, but neither at the byte count nor at what a write echoes
+  const { header } = expectedAnswer(query, station)
   CALLS[query.fn](client, query, station, (error, result) => (end = { error, result }))
   return {
     send: port.sent,
     read: frame => {
       end = null
       port.receive(Buffer.from(frame))
-      return valuesOf(/** @type {any} */ (end), { query, station, frame, name })
+      return valuesOf(/** @type {any} */ (end), { query, station, frame, name, header })
     }
   }
 }
 
-const valuesOf = (end, { query, station, frame, name }) => {
+const valuesOf = (end, { query, station, frame, name, header }) => {
   if (!end) throw new PlcError('BAD_ANSWER', { station, reason: 'modbus-serial makes nothing of it' })
   const { error, result } = end
   if (error) throw meaning(error, { query, station, frame, name })
-  // it looks at station, function, length and checksum, but neither at the byte count nor at what a write echoes
-  const { header } = expectedAnswer(query, station)
   if (header.compare(frame, 0, header.length) !== 0) {
     const reason = `${frame.toString('hex')} does not answer ${describeQuery(query)}`
     throw new PlcError('BAD_ANSWER', { station, reason })
@@ -108,7 +108,7 @@ const exchangeOf = (query, station) => {
   if (!functionOf(query.fn)?.reads) return exchange(query, station)
   const known = kept.get(query)
   if (known?.station === station) return known.made
-  const made = exchange(query, station)
+  const made = { ...exchange(query, station), kept: {} }
   kept.set(query, { station, made })
   return made
 }

@@ -125,7 +125,7 @@ class ModbusTalk {
     const { exact } = this.#memory
     const unit = exact.has(name) ? 1 : units[query.fn]
     const facts = { exact: false }
-    const result = yield* this.#counted(readDialog(query, { ...this.#options(), attempts, unit, facts }))
+    const result = yield* this.#counted(readDialog(query, this.#options({ attempts, unit, facts })))
     if (facts.exact) {
       if (exact.size >= MOST_EXACT) exact.clear()
       exact.add(name)
@@ -140,7 +140,7 @@ class ModbusTalk {
     // an answer that equals the query proves nothing while the adapter may hear itself
     const probe = this.#lease.line.echo === 'unknown'
     const names = request.points.length === 1 ? () => item : describeQuery
-    const options = { ...this.#options(), item, facts, probe, names, ...(broadcast ? { broadcast } : {}) }
+    const options = { ...this.#options({ facts }), item, probe, names, ...(broadcast ? { broadcast } : {}) }
     const result = yield* this.#counted(announced(writeDialog(write, options), sent))
     if (station !== 0) return result.values
     this.#counts.broadcasts++
@@ -155,10 +155,9 @@ class ModbusTalk {
     return gapOf(this.#settings, this.#lease.line.times?.character ?? 0)
   }
 
-  #options() {
-    const { station, framing, timeout, attempts } = this.#settings
-    const gap = this.#gap
-    return { station, protocol: framing, timeout, attempts, gap, exchange: exchangeOf }
+  #options({ attempts = this.#settings.attempts, unit = 1, facts }) {
+    const { station, framing: protocol, timeout } = this.#settings
+    return { station, protocol, timeout, attempts, gap: this.#gap, unit, facts, exchange: exchangeOf }
   }
 
   *#counted(dialog) {

@@ -14,7 +14,7 @@ const CLOSE_LIMIT = 800
 
 /**
  * Keeps one wire open: a fresh transport for each attempt, back-off with jitter between them.
- * `told` = `{ opened(), data(bytes), down(error, wasOpen) }`.
+ * `told` = `{ opened(), data(bytes, at?), down(error, wasOpen) }`.
  */
 class Connection {
   #clock
@@ -75,12 +75,12 @@ class Connection {
 
   /** A transport that was given up is not heard any more. */
   #handlers(transport) {
-    const mine = fn => value => {
-      if (this.#transport === transport) return fn(value)
+    const mine = fn => (value, at) => {
+      if (this.#transport === transport) return fn(value, at)
     }
     return {
       opened: mine(() => this.#opened()),
-      data: mine(bytes => this.#told.data(bytes)),
+      data: mine((bytes, at) => this.#told.data(bytes, at)),
       closed: mine(error => this.#lost(error)),
       failed: mine(error => this.#lost(error))
     }

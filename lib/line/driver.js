@@ -80,6 +80,7 @@ class Driver {
       station,
       calm: run.priority === PRIORITY.POLL && this.#scheduler.size === 0,
       sent: () => this.#sent(run),
+      noted: () => this.#recorder.sent(run.station, step.send, run.label),
       done: (error, answer, facts) => this.#ended(run, error, answer, facts)
     })
   }
@@ -87,7 +88,6 @@ class Driver {
   #sent(run) {
     run.sent = true
     run.step.sent?.()
-    this.#recorder.sent(run.station, run.step.send, run.label)
   }
 
   #ended(run, error, answer, facts) {

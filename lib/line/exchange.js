@@ -2,6 +2,7 @@
 
 const { PlcError } = require('../error')
 const { Hints } = require('./hints')
+const { jobOf } = require('./job')
 const { EMPTY, Receiver } = require('./receiver')
 const { Repeats } = require('./repeats')
 const { Silence } = require('./silence')
@@ -11,6 +12,8 @@ const LAG = 10
 const MOST_GRACE = 250
 
 const TOLERANCE = 0.001
+
+const nothing = () => {}
 
 /**
  * One step on the wire at a time: gap, sending, answer. Synchronous: `done(error, answer)` is called from a timer or from
@@ -67,32 +70,26 @@ class Exchange {
 
   /**
    * @param {any} step of a conversation
-   * @param {{ gap: number, station: any, calm?: boolean, sent: () => void, done: (error: any, answer: Buffer, facts: any) => void }} options
-   *   calm: nobody is in a hurry for the answer
+   * @param {{ gap: number, station: any, calm?: boolean, sent: () => void, noted?: () => void, done: (error: any, answer: Buffer, facts: any) => void }} options
+   *   calm: nobody is in a hurry for the answer; sent: it goes out now; noted: it has been handed to the wire
    *   facts: `{ due, sent, ms, wait, rest }` — when the answer should have begun; whether a byte went out; ms since the end of sending, and
    *   from there to the first byte; what came behind the answer
    */
-  start(step, { gap, station, calm = false, sent, done }) {
-    const now = this.#clock.now()
+  start(step, { gap, station, calm = false, sent, noted = nothing, done }) {
     const turnaround = calm ? this.#hints.turnaroundOf(station) : null
-    const counts = { from: now, due: 0, ours: 0, bytes: 0, reads: 0, first: null }
-    this.#job = { step, station, sent, done, phase: 'gap', written: false, turnaround, ...counts }
-    this.#silence.wait(
-      gap,
-      () => this.#send(),
-      at => this.#isJammed(at)
-    )
+    this.#job = jobOf(step, { station, turnaround, sent, noted, done }, this.#clock.now())
+    this.#silence.wait(gap, this.#send, this.#isJammed)
   }
 
   /** Nothing is sent into a flood: the step ends, if bytes came all the time. */
-  #isJammed(now) {
+  #isJammed = now => {
     const { bytes, from } = this.#job
     if (bytes === 0 || now - from < this.#settings.jamTime) return false
     this.#settle(new PlcError('LINE_JAMMED', { line: this.#link.name, bytes, sent: false }))
     return true
   }
 
-  #send() {
+  #send = () => {
     const job = this.#job
     const { send } = job.step
     this.#echo.sent(send)
@@ -104,17 +101,21 @@ class Exchange {
     job.sent()
     this.#link.write(send, error => this.#written(job, error))
     job.writing = false
+    // told behind the write: what the wire waits for comes first
+    job.noted()
     if (this.#job !== job) return
+    if (job.fault) return this.#fail(job.fault)
     this.#look()
   }
 
   #written(job, error) {
     if (this.#job !== job || job.written) return
     job.written = true
-    const now = this.#clock.now()
-    if (error) return this.#fail(error)
-    this.#sendEnd = Math.max(this.#sendEnd, now)
-    if (!job.writing) this.#look()
+    job.fault = error
+    this.#sendEnd = Math.max(this.#sendEnd, this.#clock.now())
+    if (job.writing) return
+    if (error) this.#fail(error)
+    else this.#look()
   }
 
   /** Tells the transport how long nobody needs to read: after sending, and after a part of the answer. */
@@ -124,16 +125,15 @@ class Exchange {
     else this.#hints.sent(job, length, this.#sendEnd)
   }
 
-  /** Bytes arrived. @param {Buffer} bytes */
-  data(bytes) {
-    const now = this.#clock.now()
-    this.#lastByteAt = now
+  /** @param {Buffer} bytes that arrived @param {number} [at] when, ms of the clock; default: now */
+  data(bytes, at = this.#clock.now()) {
+    this.#lastByteAt = at
     const job = this.#job
     if (!job) return this.#link.stray(bytes)
     job.bytes += bytes.length
     job.reads++
     if (job.phase !== 'awaiting' || !job.step.match) return this.#link.stray(bytes)
-    const dropped = this.#rx.push(bytes, now)
+    const dropped = this.#rx.push(bytes, at)
     if (dropped.length > 0) this.#link.skipped(dropped)
     if (!job.writing) this.#look(true)
   }

@@ -71,7 +71,7 @@ class Line extends EventEmitter {
     this.#calm = new Silence({ clock, quietSince })
     const told = {
       opened: () => this.#opened(),
-      data: bytes => this.#data(bytes),
+      data: (bytes, at) => this.#data(bytes, at),
       down: (error, wasOpen) => this.#down(error, wasOpen)
     }
     this.#connection = new Connection({ name, clock, make, random, claims, told })
@@ -277,11 +277,11 @@ class Line extends EventEmitter {
   // --- bytes and what was noticed
 
   /** @returns {number|undefined} how many messages it was, where the line listens */
-  #data(bytes) {
+  #data(bytes, at) {
     this.#recorder.stats.add('bytesIn', bytes.length)
     if (bytes.length === 0) return undefined
     if (this.#use.kind === 'messages') return this.#stream.data(bytes)
-    this.#requests.data(bytes)
+    this.#requests.data(bytes, at)
     return undefined
   }
 

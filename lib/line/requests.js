@@ -126,9 +126,9 @@ class Requests {
     this.#driver.stop(reason)
   }
 
-  /** @param {Buffer} bytes */
-  data(bytes) {
-    this.#exchange.data(bytes)
+  /** @param {Buffer} bytes @param {number} [at] when they came, ms of the clock */
+  data(bytes, at) {
+    this.#exchange.data(bytes, at)
   }
 
   #unclaimed(note, bytes) {

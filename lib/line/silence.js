@@ -15,6 +15,13 @@ class Silence {
   #clock
   #quietSince
   #timer = null
+  #ms = 0
+  /** @type {() => void} */
+  #done = never
+  /** @type {(now: number) => boolean} */
+  #givenUp = never
+  #wokenAt = 0
+  #rested = false
 
   /** @param {{ clock: any, quietSince: () => number }} options quietSince: when the last byte came or went, ms of the clock */
   constructor({ clock, quietSince }) {
@@ -29,19 +36,26 @@ class Silence {
    */
   wait(ms, done, givenUp = never) {
     if (this.#timer !== null) this.stop()
-    this.#look({ ms, done, givenUp, wokenAt: this.#clock.now(), rested: false })
+    this.#ms = ms
+    this.#done = done
+    this.#givenUp = givenUp
+    this.#wokenAt = this.#clock.now()
+    this.#rested = false
+    this.#look()
   }
 
-  #look(wait) {
-    const free = this.#quietSince() + wait.ms
+  #look = () => {
+    this.#timer = null
+    const free = this.#quietSince() + this.#ms
     const now = this.#nowOr(free)
     // once: a process that is always late must go on all the same
-    const overslept = !wait.rested && now - Math.max(free, wait.wokenAt) >= LATE
-    if (now >= free - TOLERANCE && !overslept) return wait.done()
-    if (wait.givenUp(now)) return
+    const overslept = !this.#rested && now - Math.max(free, this.#wokenAt) >= LATE
+    if (now >= free - TOLERANCE && !overslept) return this.#done()
+    if (this.#givenUp(now)) return
     const rest = overslept ? BREATH : this.#inTimers(free - now)
-    const next = { ...wait, rested: wait.rested || overslept, wokenAt: now + rest }
-    this.#timer = this.#clock.setTimer(() => this.#look(next), rest)
+    this.#rested ||= overslept
+    this.#wokenAt = now + rest
+    this.#timer = this.#clock.setTimer(this.#look, rest)
   }
 
   /** Where the time is all but over, that time. */

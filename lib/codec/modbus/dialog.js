@@ -4,7 +4,7 @@ const { decodeAnswer, describeQuery, expectedAnswer } = require('./answer')
 const { asciiLength, fromAscii, toAscii } = require('./ascii')
 const { exceptionByCode, exceptionError } = require('./exceptions')
 const { EXCEPTION, functionOf, readFunction } = require('./functions')
-const { answerTo } = require('./match')
+const { frameTo } = require('./match')
 const { check, closed, encodeQuery } = require('./query')
 const { roundUp } = require('./unit')
 
@@ -13,7 +13,8 @@ const { roundUp } = require('./unit')
  * @typedef {import('./query').Query} Query
  * @typedef {{ frames: Query[] } | { bits: { base: number, mask: number, value: number }, single?: boolean }} Write `frames` go out in this order;
  *   `bits`: the bits of `mask` of holding register `base` become those of `value`, the others stay: read, change, write; `single`: by 06, not 10
- * @typedef {{ send: Buffer, read: (frame: Buffer) => unknown }} Exchange RTU frames both
+ * @typedef {{ send: Buffer, read: (frame: Buffer) => unknown, kept?: object }} Exchange RTU frames both; kept: an empty object, of one that is used
+ *   again and again: what the conversation makes of it stays there
  * @typedef {{ attempts: number, writes: number, exact: boolean }} Facts frames sent so far; those of them that write; `exact`: a read that was
  *   rounded up to the read bit unit was refused (exception 02) and asked exactly
  * @typedef {object} Options
@@ -170,18 +171,29 @@ function meaning(error, { done, frames, item, talk }) {
 }
 
 /** One step: bytes out, the answer in. */
+/** What goes out, and what recognises the answer. */
+function wireOf(made, query, { station, protocol }) {
+  const { kept = {} } = made
+  return (kept[protocol] ??= wireFor(made.send, query, { station, protocol }))
+}
+
+function wireFor(rtu, query, { station, protocol }) {
+  const send = protocol === 'ascii' ? toAscii(rtu) : rtu
+  const expected = expectedAnswer(query, station)
+  const usual = protocol === 'ascii' ? asciiLength(expected.length) : expected.length
+  return { send, usual, match: frameTo(expected, { station, fn: query.fn, protocol, sent: send }) }
+}
+
 function* exchange(query, talk) {
   const { station, protocol, timeout, gap, facts, names } = talk
-  const { send: rtu, read } = talk.exchange(query, station)
-  const send = protocol === 'ascii' ? toAscii(rtu) : rtu
+  const made = talk.exchange(query, station)
+  const { send, match, usual } = wireOf(made, query, talk)
   facts.attempts++
-  const { length } = expectedAnswer(query, station)
-  const usual = protocol === 'ascii' ? asciiLength(length) : length
-  const bytes = yield { send, match: answerTo(query, { station, protocol, sent: send }), timeout, gap, usual }
+  const bytes = yield { send, match, timeout, gap, usual }
   const frame = protocol === 'ascii' ? fromAscii(bytes) : bytes
   if (!frame) throw new PlcError('BAD_ANSWER', { station, reason: 'it is no frame' })
   if (frame[1] & EXCEPTION) throw exceptionError(frame[2], { station, fn: query.fn, address: names(query) })
-  return readFrame(read, frame, station)
+  return readFrame(made.read, frame, station)
 }
 
 function readFrame(read, frame, station) {

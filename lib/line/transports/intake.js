@@ -27,8 +27,8 @@ class Intake {
   #over = false
 
   /**
-   * @param {{ clock: import('../clock').Clock, data: (bytes: Buffer) => any, hold: (held: boolean) => void }} options
-   *   data: returns how many messages they were, where the line listens; hold: stops the source, and lets it go on; a chunk that comes all the same is
+   * @param {{ clock: import('../clock').Clock, data: (bytes: Buffer, at?: number) => any, hold: (held: boolean) => void }} options
+   *   data: gets when they came (ms of the clock), where that is not now, and returns how many messages they were, where the line listens; hold: stops the source, and lets it go on; a chunk that comes all the same is
    *   kept
    */
   constructor({ clock, data, hold }) {
@@ -43,7 +43,7 @@ class Intake {
     if (this.#timer !== null) return
     const now = this.#clock.now()
     if (now - this.#since >= PAUSE) this.#renew(now)
-    this.#deliver()
+    this.#deliver(now)
     if (this.#timer !== null) this.#hold(true)
   }
 
@@ -57,14 +57,14 @@ class Intake {
     this.#left = Math.min(PIECE, this.#left + PIECE)
   }
 
-  /** As much as may be taken now; the rest waits. */
-  #deliver() {
+  /** As much as may be taken now; the rest waits. @param {number} [at] when all of it came */
+  #deliver(at) {
     while (this.#waiting.length > 0) {
       if (this.#left <= 0) {
         this.#timer = this.#clock.setTimer(() => this.#goOn(), PAUSE)
         return
       }
-      const messages = this.#data(this.#next())
+      const messages = this.#data(this.#next(), at)
       this.#step = messages === undefined ? PIECE : STEP
       this.#left -= (messages ?? 0) * MESSAGE
     }

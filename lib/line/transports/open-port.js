@@ -67,11 +67,12 @@ class OpenPort {
       this.#buffer = Buffer.allocUnsafeSlow(SIZE)
       this.#used = 0
     }
-    this.#port.read(this.#buffer, this.#used, SIZE - this.#used).then(this.#came, this.#failed)
+    this.#port.readInto(this.#buffer, this.#used, SIZE - this.#used, this.#came)
   }
 
-  #came = ({ bytesRead }) => {
+  #came = (error, bytesRead) => {
     this.#reading = false
+    if (error) return this.#failed(error)
     if (bytesRead === 0) return this.#break(hungUp())
     if (!this.isOpen) return
     const from = this.#used
@@ -80,8 +81,7 @@ class OpenPort {
     this.#next()
   }
 
-  #failed = error => {
-    this.#reading = false
+  #failed(error) {
     if (!error.canceled) return this.#break(error)
     this.#next()
   }

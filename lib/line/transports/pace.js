@@ -5,17 +5,21 @@ const LEAST = 1
 /** They fire so much (ms) later than asked for. */
 const LATE = 0.3
 /** The byte from which the time of the others is counted was seen so much (ms) after it came. */
-const SEEN = 0.2
+const SEEN = 0.3
 /** To give up a wait that is under way is worth it for so much (ms). */
 const LONG = 2
 
-/** When the next bytes can be there at the earliest; who sleeps until then can be woken. */
+/** When the next bytes can be there at the earliest; who sleeps until then can be woken. One sleeps at a time. */
 class Pace {
   #clock
   #at = -Infinity
   #once = false
-  /** @type {(() => void) | null} */
-  #wake = null
+  /** @type {any} */
+  #timer = null
+  /** ms of the clock; null: about so */
+  #until = /** @type {number | null} */ (null)
+  /** @type {() => void} */
+  #wake = () => {}
   /** @type {(() => void) | null} */
   #giveUp = null
 
@@ -36,43 +40,33 @@ class Pace {
     this.#giveUp = giveUp
   }
 
-  /** @returns {Promise<void> | null} null: it is time */
-  sleep() {
-    const { linger } = this.#clock
-    return this.#once || !linger ? this.#about() : this.#until(this.#at - SEEN, linger)
+  /** @param {() => void} wake when it is time, or at the end @returns {boolean} false: it is time now, and nobody sleeps */
+  sleep(wake) {
+    const left = this.#at - this.#clock.now()
+    const exact = !this.#once && this.#clock.linger !== undefined
+    // of what is missing behind a whole ms that is rather short the descriptor tells
+    const ms = exact ? Math.floor(left - SEEN) : Math.round(left - LATE)
+    if (!(ms >= LEAST)) return false
+    this.#until = exact ? this.#at - SEEN : null
+    this.#wake = wake
+    this.#timer = this.#clock.setTimer(this.#fired, ms)
+    return true
   }
 
-  /** The nearest whole ms; timers are a little late, so rather the one before. Of what is still missing then the descriptor tells. */
-  #about() {
-    return this.#timer(Math.round(this.#at - this.#clock.now() - LATE), () => {})
-  }
-
-  /** Whole ms by a timer, the rest without one. */
-  #until(at, linger) {
-    return this.#timer(Math.floor(at - this.#clock.now()), () => {
-      if (at - this.#clock.now() < LEAST) linger(at)
-    })
-  }
-
-  #timer(ms, last) {
-    if (!(ms >= LEAST)) return null
-    return new Promise((/** @type {(value: void) => void} */ resolve) => {
-      const wake = () => {
-        this.#wake = null
-        this.#clock.clearTimer(timer)
-        resolve()
-      }
-      const timer = this.#clock.setTimer(() => {
-        last()
-        wake()
-      }, ms)
-      this.#wake = wake
-    })
+  /** Whole ms have gone by; the rest goes without a timer. */
+  #fired = () => {
+    this.#timer = null
+    const until = this.#until
+    if (until !== null && until - this.#clock.now() < LEAST) this.#clock.linger?.(until)
+    this.#wake()
   }
 
   stop() {
     this.#at = -Infinity
-    this.#wake?.()
+    if (this.#timer === null) return
+    this.#clock.clearTimer(this.#timer)
+    this.#timer = null
+    this.#wake()
   }
 }
 

@@ -2,23 +2,13 @@
 
 const fs = require('node:fs')
 
+/** Of the poller: tell when there is something to read. */
+const READABLE = 1
+
 const isAgain = error => error.code === 'EAGAIN' || error.code === 'EWOULDBLOCK' || error.code === 'EINTR'
 
 const canceled = () => Object.assign(new Error('Port is not open'), { canceled: true })
 const hungUp = () => Object.assign(new Error('the port has hung up'), { disconnect: true })
-
-/**
- * In the call itself: the descriptor does not block, and a trip through the thread pool costs several times as much.
- * @returns {number} bytes; -1: there is nothing yet
- */
-const readNow = (fd, { buffer, offset, length }) => {
-  try {
-    return fs.readSync(fd, buffer, offset, length, null)
-  } catch (error) {
-    if (isAgain(error)) return -1
-    throw error
-  }
-}
 
 /** @returns {number} how many bytes the system took at once */
 const writeNow = (fd, bytes) => {
@@ -30,32 +20,113 @@ const writeNow = (fd, bytes) => {
   }
 }
 
-/** Its own `stop` tells all who listen of an error, with its stack, each time; nobody listens. */
+/** Its own `stop` tells all who listen of an error, with its stack, each time; nobody needs it. */
 const stopPolling = poller => (typeof poller.poller?.stop === 'function' ? poller.poller : poller).stop()
 
-/** Whether the descriptor can be read, or has hung up; false: nobody wants to know any more. @returns {Promise<boolean>} */
-const readable = (poller, pace) =>
-  new Promise((resolve, reject) => {
-    const told = error => {
-      pace.watch(null)
-      if (error) reject(error)
-      else resolve(true)
+/**
+ * Reads a descriptor by wire time. The system tells when there is something; but after a sleep there should be, so it is not even asked. Without
+ * promises: what a line does most costs least so.
+ */
+class DescriptorReader {
+  #port
+  #pace
+  #buffer = /** @type {any} */ (null)
+  #offset = 0
+  #length = 0
+  /** @type {(error: any, bytesRead: number) => void} */
+  #done = () => {}
+  /** the descriptor is asked */
+  #polls = false
+
+  /** @param {any} port @param {import('./pace').Pace} pace */
+  constructor(port, pace) {
+    this.#port = port
+    this.#pace = pace
+    port.poller.on('readable', this.#told)
+  }
+
+  /** One read at a time. */
+  read(buffer, offset, length, done) {
+    this.#buffer = buffer
+    this.#offset = offset
+    this.#length = length
+    this.#done = done
+    this.#wait()
+  }
+
+  #wait() {
+    if (this.#pace.sleep(this.#look)) return
+    this.#polls = true
+    this.#pace.watch(this.#giveUp)
+    this.#port.poller.poll(READABLE)
+  }
+
+  #told = error => {
+    // once somebody has waited to write, the poller asks by itself for what nobody wants to know now, on and on
+    if (!this.#polls) return void (error || this.#stop())
+    this.#polls = false
+    this.#pace.watch(null)
+    try {
+      if (error) this.#done(error, 0)
+      else this.#look()
+    } catch (thrown) {
+      // thrown from here it would end the process without a word
+      queueMicrotask(() => {
+        throw thrown
+      })
     }
-    poller.once('readable', told)
-    pace.watch(() => {
-      // it would end the wait of a write that is under way, too
-      if (poller.listenerCount('writable') > 0) return
-      pace.watch(null)
-      poller.off('readable', told)
-      stopPolling(poller)
-      resolve(false)
-    })
-  })
+  }
+
+  /** @returns {boolean} not while a write waits: its wait would end, too */
+  #stop() {
+    const { poller } = this.#port
+    if (poller.listenerCount('writable') > 0) return false
+    stopPolling(poller)
+    return true
+  }
+
+  #giveUp = () => {
+    this.#polls = false
+    if (!this.#stop()) return void (this.#polls = true)
+    this.#pace.watch(null)
+    this.#wait()
+  }
+
+  #look = () => {
+    // a closed port has nobody left to ask
+    if (!this.#port.isOpen) return this.#done(canceled(), 0)
+    let bytesRead
+    try {
+      // in the call itself: the descriptor does not block, and a trip through the thread pool costs several times as much
+      bytesRead = fs.readSync(this.#port.fd, this.#buffer, this.#offset, this.#length, null)
+    } catch (error) {
+      return isAgain(error) ? this.#wait() : this.#done(error, 0)
+    }
+    if (bytesRead === 0) this.#done(hungUp(), 0)
+    else this.#done(null, bytesRead)
+  }
+}
+
+/** Where there is no descriptor (Windows, mock): the wrapped read, when it is time. */
+const plainReader = (port, pace) => {
+  const plainRead = port.read.bind(port)
+  return (buffer, offset, length, done) => {
+    const now = () => {
+      if (!port.isOpen) return done(canceled(), 0)
+      plainRead(buffer, offset, length).then(
+        ({ bytesRead }) => done(null, bytesRead),
+        error => done(error, 0)
+      )
+    }
+    if (!pace.sleep(now)) now()
+  }
+}
 
 /**
  * A binding of serialport whose ports read by wire time: not at every byte, but when the awaited ones can be there. And a
  * read of zero bytes is a hang-up; the wrapped binding would ask again for ever (bindings-cpp #162).
- * Where there is no descriptor (Windows, mock) the wrapped read is used.
+ * Its ports have besides: `readInto(buffer, offset, length, done)`, one at a time, where done gets an error or null, and how many bytes it is; and
+ * `writeNow(bytes)`, which returns how many bytes the system took at once.
  *
  * @param {any} binding of serialport
  * @param {import('./pace').Pace} pace
@@ -65,36 +136,19 @@ function pacedBinding(binding, pace) {
     list: () => binding.list(),
     open: async options => {
       const port = await binding.open(options)
-      const plainRead = port.read.bind(port)
       const close = port.close.bind(port)
-      const isPlain = () => typeof port.fd !== 'number' || !port.poller
-      port.read = async (buffer, offset, length) => {
-        if (!isPlain()) return { buffer, bytesRead: await read(port, { buffer, offset, length }, pace) }
-        await pace.sleep()
-        if (!port.isOpen) throw canceled()
-        return plainRead(buffer, offset, length)
-      }
-      port.writeNow = bytes => (isPlain() ? 0 : writeNow(port.fd, bytes))
+      const isPlain = typeof port.fd !== 'number' || !port.poller
+      const reader = isPlain ? null : new DescriptorReader(port, pace)
+      port.readInto = reader ? reader.read.bind(reader) : plainReader(port, pace)
+      port.writeNow = bytes => (isPlain ? 0 : writeNow(port.fd, bytes))
       port.close = () => {
+        const closed = close()
+        // who sleeps finds it closed
         pace.stop()
-        return close()
+        return closed
       }
       return port
     }
-  }
-}
-
-/** The system tells when there is something; but after a sleep there should be, so it is not even asked. */
-async function read(port, target, pace) {
-  for (;;) {
-    const sleep = pace.sleep()
-    const isTime = sleep ? await sleep.then(() => true) : await readable(port.poller, pace)
-    // also where the wait was given up: a closed port has nobody left to ask
-    if (!port.isOpen) throw canceled()
-    if (!isTime) continue
-    const bytesRead = readNow(port.fd, target)
-    if (bytesRead === 0) throw hungUp()
-    if (bytesRead > 0) return bytesRead
   }
 }
 

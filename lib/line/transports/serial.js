@@ -64,7 +64,7 @@ class SerialTransport {
     this.#pace = new Pace(clock)
     this.#intake = new Intake({
       clock,
-      data: bytes => this.#handlers.data(bytes),
+      data: (bytes, at) => this.#handlers.data(bytes, at),
       hold: held => this.#port.hold(held)
     })
   }

@@ -25,9 +25,9 @@ const createPort = (takes = 0) => {
     set: flags => later(`set ${JSON.stringify(flags)}`),
     writeNow: bytes => (log.push(`now ${bytes}`), Math.min(takes, bytes.length)),
     write: bytes => (log.push(`write ${bytes}`), later('write')),
-    read(buffer, offset, length) {
+    readInto(buffer, offset, length, done) {
       log.push('read')
-      return later('read').then(text => ({ bytesRead: buffer.write(text, offset, length) }))
+      later('read').then(text => done(null, buffer.write(text, offset, length)), done)
     },
     close: () => (log.push('close'), later('close').finally(() => (port.isOpen = false)))
   }

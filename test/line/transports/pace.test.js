@@ -5,7 +5,7 @@ const { Pace } = require('../../../lib/line/transports/pace')
 
 /** A clock of whole ms whose timers are late, as those of the machine; what is set and lingered for is noted. */
 const create = ({ late = 0.1, lazy = false } = {}) => {
-  const bench = { time: 0, log: /** @type {any[]} */ ([]), timer: /** @type {any} */ (null) }
+  const bench = { time: 0, log: /** @type {any[]} */ ([]), timer: /** @type {any} */ (null), woken: 0 }
   const clock = {
     now: () => bench.time,
     wall: () => 0,
@@ -26,24 +26,26 @@ const create = ({ late = 0.1, lazy = false } = {}) => {
   const fire = () => {
     const { fn, at } = bench.timer
     bench.time = at
+    bench.timer = null
     fn()
   }
-  return Object.assign(bench, { pace, fire })
+  const sleep = () => pace.sleep(() => bench.woken++)
+  return Object.assign(bench, { pace, fire, sleep })
 }
 
 describe('when the next bytes can be there', () => {
   for (const [ms, log, end] of /** @type {[number, any[], string][]} */ ([
-    [25.4, [25, 'until 25.20'], '25.20'],
-    [25.1, [24, 'until 24.90'], '24.90'],
-    [25.25, [25, 'until 25.05'], '25.10'],
-    [1.5, [1, 'until 1.30'], '1.30']
+    [25.4, [25, 'until 25.10'], '25.10'],
+    [25.1, [24, 'until 24.80'], '24.80'],
+    [25.35, [25, 'until 25.05'], '25.10'],
+    [1.5, [1, 'until 1.20'], '1.20']
   ])) {
-    it(`in ${ms} ms: a timer, and what is left of a ms without one; a little early, since the byte before was seen a little late`, async () => {
+    it(`in ${ms} ms: a timer, and what is left of a ms without one; a little early, since the byte before was seen a little late`, () => {
       const bench = create()
       bench.pace.hint(ms)
-      const sleep = bench.pace.sleep()
+      bench.sleep()
       bench.fire()
-      await sleep
+      assert.equal(bench.woken, 1)
       const [whole, rest] = bench.log
       assert.deepEqual([whole, rest], log)
       assert.equal(Math.max(bench.time, whole + 0.1).toFixed(2), end)
@@ -55,21 +57,21 @@ describe('when the next bytes can be there', () => {
     const bench = create()
     for (const ms of [1.1, 0, -3, -Infinity]) {
       bench.pace.hint(ms)
-      assert.equal(bench.pace.sleep(), null)
+      assert.equal(bench.sleep(), false)
     }
     assert.deepEqual(bench.log, [])
   })
 
-  it('behind a timer that came far too early nobody lingers for long', async () => {
+  it('behind a timer that came far too early nobody lingers for long', () => {
     const bench = create({ late: -5 })
     bench.pace.hint(25.4)
-    const sleep = bench.pace.sleep()
+    bench.sleep()
     bench.fire()
-    await sleep
+    assert.equal(bench.woken, 1)
     assert.deepEqual([bench.log, bench.time], [[25], 20])
   })
 
-  it('a ms more or less, where nobody asks when the first byte comes', async () => {
+  it('a ms more or less, where nobody asks when the first byte comes', () => {
     for (const [ms, whole] of [
       [25.4, 25],
       [25.9, 26],
@@ -77,9 +79,9 @@ describe('when the next bytes can be there', () => {
     ]) {
       const bench = create()
       bench.pace.hint(ms, true)
-      const sleep = bench.pace.sleep()
+      bench.sleep()
       bench.fire()
-      await sleep
+      assert.equal(bench.woken, 1)
       assert.deepEqual(bench.log, [whole], `${ms}`)
     }
   })
@@ -96,13 +98,12 @@ describe('when the next bytes can be there', () => {
     assert.equal(givenUp, 1)
   })
 
-  it('who sleeps is woken at the end, without a timer that is left', async () => {
+  it('who sleeps is woken at the end, without a timer that is left', () => {
     const bench = create()
     bench.pace.hint(25.4)
-    const sleep = bench.pace.sleep()
-    bench.pace.stop()
-    await sleep
-    assert.deepEqual([bench.log, bench.timer], [[25], null])
-    assert.equal(bench.pace.sleep(), null)
+    bench.sleep()
+    for (let n = 0; n < 2; n++) bench.pace.stop()
+    assert.deepEqual([bench.log, bench.timer, bench.woken], [[25], null, 1])
+    assert.equal(bench.sleep(), false)
   })
 })

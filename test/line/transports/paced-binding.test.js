@@ -7,6 +7,7 @@ const { pacedBinding } = require('../../../lib/line/transports/paced-binding')
 const { createVirtualClock } = require('../../../lib/sim')
 
 const fault = code => Object.assign(new Error(code), { code })
+const canceled = () => Object.assign(new Error('Canceled'), { canceled: true })
 const soon = () => new Promise(resolve => setImmediate(resolve))
 
 describe('binding that reads by wire time', () => {
@@ -34,15 +35,22 @@ describe('binding that reads by wire time', () => {
     const port = {
       isOpen: true,
       fd: 77,
-      told: /** @type {any[]} */ ([]),
+      tell: /** @type {(error: any) => void} */ (() => {}),
       poller: {
         writers: 0,
-        once(event, done) {
-          log.push(event)
-          port.told.push(done)
+        on(event, listener) {
+          assert.equal(event, 'readable')
+          port.tell = listener
         },
-        off: (event, done) => log.push(`off ${event} ${port.told.indexOf(done)}`),
-        stop: () => log.push('stop'),
+        poll(flag) {
+          assert.equal(flag, 1)
+          log.push('readable')
+        },
+        stop() {
+          log.push('stop')
+          // as that of bindings-cpp
+          port.tell(canceled())
+        },
         listenerCount: event => (event === 'writable' ? port.poller.writers : 1)
       },
       read: async () => ({ bytesRead: 99 }),
@@ -56,10 +64,10 @@ describe('binding that reads by wire time', () => {
   /** @returns {{ end: any }} how a read ends, when it does */
   const reading = port => {
     const read = { end: /** @type {any} */ (null) }
-    port.read(buffer, 0, 16).then(
-      ({ bytesRead }) => (read.end = bytesRead),
-      error => (read.end = error)
-    )
+    port.readInto(buffer, 0, 16, (error, bytesRead) => {
+      assert.equal(read.end, null, 'it ends once')
+      read.end = error ?? bytesRead
+    })
     return read
   }
 
@@ -83,10 +91,10 @@ describe('binding that reads by wire time', () => {
     await soon()
     assert.deepEqual([log, read.end], [['readable'], null])
     results = [fault('EAGAIN'), 4]
-    port.told[0](null)
+    port.tell(null)
     await soon()
     assert.deepEqual([log, read.end], [['readable', 'read', 'readable'], null])
-    port.told[1](null)
+    port.tell(null)
     await soon()
     assert.equal(read.end, 4)
   })
@@ -97,10 +105,10 @@ describe('binding that reads by wire time', () => {
       const read = reading(port)
       await soon()
       results = [fault(code), 4]
-      port.told[0](null)
+      port.tell(null)
       await soon()
       assert.deepEqual([log, read.end], [['readable', 'read', 'readable'], null])
-      port.told[1](null)
+      port.tell(null)
       await soon()
       assert.equal(read.end, 4)
     })
@@ -116,7 +124,7 @@ describe('binding that reads by wire time', () => {
     await clock.advance(1)
     await soon()
     assert.deepEqual([log, read.end], [['read', 'readable'], null])
-    port.told[0](null)
+    port.tell(null)
     await soon()
     assert.equal(read.end, 4)
     assert.equal(clock.pending(), 0)
@@ -146,13 +154,13 @@ describe('binding that reads by wire time', () => {
       const read = reading(port)
       await soon()
       pace.hint(clock.now() + 30, true)
-      assert.deepEqual(log, ['readable', 'off readable 0', 'stop'])
+      assert.deepEqual(log, ['readable', 'stop'])
       results = [9]
       await clock.advance(29)
       assert.equal(read.end, null)
       await clock.advance(1)
       await soon()
-      assert.deepEqual([read.end, log.length, clock.pending()], [9, 4, 0])
+      assert.deepEqual([read.end, log.length, clock.pending()], [9, 3, 0])
     })
 
     it('in the system alone, where that can be told', async () => {
@@ -161,7 +169,7 @@ describe('binding that reads by wire time', () => {
       reading(port)
       await soon()
       pace.hint(clock.now() + 30, true)
-      assert.deepEqual(log, ['readable', 'off readable 0', 'stop in the system'])
+      assert.deepEqual(log, ['readable', 'stop in the system'])
     })
 
     it('and if there is nothing yet, or a part, as ever', async () => {
@@ -172,8 +180,8 @@ describe('binding that reads by wire time', () => {
       results = [fault('EAGAIN'), 4]
       await clock.advance(30)
       await soon()
-      assert.deepEqual([read.end, log.slice(3)], [null, ['read', 'readable']])
-      port.told[1](null)
+      assert.deepEqual([read.end, log.slice(2)], [null, ['read', 'readable']])
+      port.tell(null)
       await soon()
       assert.equal(read.end, 4)
     })
@@ -200,7 +208,7 @@ describe('binding that reads by wire time', () => {
       assert.deepEqual(log, ['readable'])
       port.poller.writers = 0
       pace.hint(clock.now() + 30, true)
-      assert.deepEqual(log, ['readable', 'off readable 0', 'stop'])
+      assert.deepEqual(log, ['readable', 'stop'])
       results = [1]
       await clock.advance(30)
       await soon()
@@ -213,7 +221,7 @@ describe('binding that reads by wire time', () => {
         results = [1]
         reading(port)
         await soon()
-        port.told[0](error)
+        port.tell(error)
         await soon()
         pace.hint(clock.now() + 30, true)
         assert.ok(!log.includes('stop'), log.join())
@@ -227,7 +235,7 @@ describe('binding that reads by wire time', () => {
       pace.hint(clock.now() + 30, true)
       await port.close()
       await soon()
-      assert.deepEqual([read.end?.canceled, log, clock.pending()], [true, ['readable', 'off readable 0', 'stop'], 0])
+      assert.deepEqual([read.end?.canceled, log, clock.pending()], [true, ['readable', 'stop'], 0])
     })
 
     it('a hang-up is seen when it is over', async () => {
@@ -265,18 +273,47 @@ describe('binding that reads by wire time', () => {
       results = [0]
       const read = reading(port)
       await clock.advance(20)
-      port.told[0]?.(null)
+      port.tell(null)
       await soon()
       assert.deepEqual([read.end.disconnect, read.end.message], [true, 'the port has hung up'])
     })
   }
+
+  it('what the poller asks for by itself, once a write has waited, is stopped; but not while a write waits', async () => {
+    const port = await open()
+    pace.hint(clock.now() + 20)
+    const read = reading(port)
+    port.tell(null)
+    assert.deepEqual([log, read.end], [['stop'], null])
+    port.poller.writers = 1
+    port.tell(null)
+    assert.deepEqual([log, read.end], [['stop'], null])
+  })
+
+  it('what its reader throws is not thrown into the poller, which would end the process without a word', async () => {
+    const port = await open()
+    const own = process.listeners('uncaughtException')
+    process.removeAllListeners('uncaughtException')
+    try {
+      const thrown = new Promise(resolve => process.once('uncaughtException', resolve))
+      results = [1]
+      port.readInto(buffer, 0, 16, () => {
+        throw new Error('mine')
+      })
+      port.tell(null)
+      const error = await thrown
+      assert.equal(error.message, 'mine')
+    } finally {
+      for (const listener of own) process.on('uncaughtException', listener)
+    }
+  })
 
   it('fails as the system says', async () => {
     const port = await open()
     results = [fault('EIO')]
     const read = reading(port)
     await soon()
-    port.told[0](null)
+    port.tell(null)
     await soon()
     assert.equal(read.end.code, 'EIO')
   })
@@ -296,7 +333,7 @@ describe('binding that reads by wire time', () => {
     const read = reading(port)
     await soon()
     await port.close()
-    port.told[0](null)
+    port.tell(null)
     await soon()
     assert.deepEqual([read.end?.canceled, clock.pending(), log], [true, 0, ['readable']])
   })

@@ -60,8 +60,8 @@ const compare = async ({ chunk, count, before, requests, rounds }) => {
 /**
  * Rows of one case. What the machine does besides changes by the minute: so each round of ours is compared with that of the peer beside it, and the
  * middle one of these ratios counts.
- * @param {{ chunk: number, count: number, before: number, requests: number, rounds: number, most: Record<string, number> }} each most: that our processor time may be
- *   of the peer's, by peer
+ * @param {{ chunk: number, count: number, before: number, requests: number, rounds: number, most: Record<string, number> }} each most: that our
+ *   processor time may be of the peer's, by peer
  */
 async function* comparison({ most, ...each }) {
   const { ours, ...peers } = await compare(each)
@@ -79,7 +79,7 @@ async function* comparison({ most, ...each }) {
       goal
     })
     yield row('processor', cpu, cpu, ['<=', most[against]])
-    yield row('cycle less the silence of RTU', cycle, each => each.cycle, ['<=', 1])
+    yield row('cycle less the silence of RTU', cycle, round => round.cycle, ['<=', 1])
   }
 }
 

@@ -6,6 +6,8 @@ const LEAST = 1
 const LATE = 0.3
 /** The byte from which the time of the others is counted was seen so much (ms) after it came. */
 const SEEN = 0.3
+/** Clocks of two sides differ by such a part of the time at least. */
+const DRIFT = 0.002
 /** To give up a wait that is under way is worth it for so much (ms). */
 const LONG = 2
 
@@ -45,9 +47,10 @@ class Pace {
     const left = this.#at - this.#clock.now()
     const exact = !this.#once && this.#clock.linger !== undefined
     // of what is missing behind a whole ms that is rather short the descriptor tells
-    const ms = exact ? Math.floor(left - SEEN) : Math.round(left - LATE)
+    const early = SEEN + DRIFT * left
+    const ms = exact ? Math.floor(left - early) : Math.round(left - LATE)
     if (!(ms >= LEAST)) return false
-    this.#until = exact ? this.#at - SEEN : null
+    this.#until = exact ? this.#at - early : null
     this.#wake = wake
     this.#timer = this.#clock.setTimer(this.#fired, ms)
     return true

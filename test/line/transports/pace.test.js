@@ -35,9 +35,10 @@ const create = ({ late = 0.1, lazy = false } = {}) => {
 
 describe('when the next bytes can be there', () => {
   for (const [ms, log, end] of /** @type {[number, any[], string][]} */ ([
-    [25.4, [25, 'until 25.10'], '25.10'],
-    [25.1, [24, 'until 24.80'], '24.80'],
-    [25.35, [25, 'until 25.05'], '25.10'],
+    [25.4, [25, 'until 25.05'], '25.10'],
+    [25.5, [25, 'until 25.15'], '25.15'],
+    [25.1, [24, 'until 24.75'], '24.75'],
+    [264.6, [263, 'until 263.77'], '263.77'],
     [1.5, [1, 'until 1.20'], '1.20']
   ])) {
     it(`in ${ms} ms: a timer, and what is left of a ms without one; a little early, since the byte before was seen a little late`, () => {

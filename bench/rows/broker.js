@@ -9,12 +9,14 @@ const path = require('node:path')
 const { Aedes } = require('aedes')
 const { startNodeRed } = require('../../test/support/node-red')
 const { startFarEnd } = require('../far-end')
+const { median } = require('../measure')
 
 const TAGS = 100
 const INTERVAL = 100 // ms; the line needs 71
 const BAUD = 38400
-const SETTLE = 60000 // a gateway runs for months: what its JavaScript takes until the engine has translated it is not what a message costs
-const ROUNDS = 6
+/** A gateway runs for months: what its JavaScript takes until the engine has translated it, after some thousand cycles, is not what a message costs. */
+const SETTLE = 240000
+const ROUNDS = 9
 const ROUND = 6000
 const MOST = 1.3
 
@@ -125,14 +127,15 @@ async function* rows() {
     await pause(SETTLE)
     const rounds = []
     for (let n = 0; n < ROUNDS; n++) rounds.push(await observe(runtimes, broker.counts))
-    const [value, limit] = [0, 1].map(at => Math.min(...rounds.map(round => round[at])))
     const name = `from the line to the broker, ${TAGS} tags, processor of a message`
+    const limit = median(rounds.map(([, sending]) => sending))
     yield {
       name,
-      value,
+      value: median(rounds.map(([reading]) => reading)),
       unit: 'us',
       against: `a source that only sends, ${limit.toFixed(1)} us`,
-      ratio: value / limit,
+      // both at the same time: what else the machine does concerns both
+      ratio: median(rounds.map(([reading, sending]) => reading / sending)),
       goal: ['<=', MOST]
     }
   } finally {

@@ -94,15 +94,16 @@ class Poller {
   }
 
   #wake() {
-    this.#clock.clearTimer(this.#timer)
+    if (this.#timer !== null) this.#clock.clearTimer(this.#timer)
     this.#timer = null
     if (this.#times.size === 0) return
     let next = Infinity
     for (const { due } of this.#times.values()) next = Math.min(next, due)
-    this.#timer = this.#clock.setTimer(() => this.#tick(), Math.max(0, next - this.#clock.now()))
+    this.#timer = this.#clock.setTimer(this.#tick, Math.max(0, next - this.#clock.now()))
   }
 
-  #tick() {
+  #tick = () => {
+    this.#timer = null
     const now = this.#clock.now()
     const ready = []
     for (const [member, times] of this.#times) {

@@ -436,12 +436,23 @@ describe('line: one step after the other, and the timer that is left', () => {
 
 describe('line: one step, in a process that is late', () => {
   const STEP = { send: Buffer.from('query'), match: toy.answerTo(5, 0), timeout: 200 }
-  const start = ({ step = STEP, gap = 0, character = 1, waiting = false, before = '' } = {}) => {
+  const start = ({
+    step = STEP,
+    gap = 0,
+    character = 1,
+    waiting = false,
+    before = '',
+    fault = /** @type {any} */ (undefined)
+  } = {}) => {
     const clock = createLateClock()
     const ended = []
+    const log = []
     const link = {
       name: 'mill',
-      write: (_, done) => done(),
+      write: (_, done) => {
+        log.push('written')
+        done(fault)
+      },
       hint: () => {},
       waiting: () => waiting,
       stray: () => {},
@@ -451,11 +462,31 @@ describe('line: one step, in a process that is late', () => {
     const times = { character, slack: 50, gap: 0 }
     const settings = { writeTimeout: 1000, jamTime: 1000 }
     const one = new Exchange({ clock, settings, times, echo: new Echo('off', clock.now), link })
-    const done = (error, answer, facts) => ended.push([error?.code ?? answer.toString('hex'), facts])
+    const done = (error, answer, facts) => {
+      log.push('ended')
+      ended.push([error?.code ?? answer.toString('hex'), facts])
+    }
+    const noted = () => log.push('noted')
     if (before) one.data(Buffer.from(before, 'hex'))
-    one.start(step, { gap, station: 5, sent: () => {}, done })
-    return { clock, one, ended, hear: hex => one.data(Buffer.from(hex, 'hex')) }
+    one.start(step, { gap, station: 5, sent: () => log.push('sent'), noted, done })
+    return { clock, one, ended, log, hear: hex => one.data(Buffer.from(hex, 'hex')) }
   }
+
+  it('is told of before it goes out, and noted behind it; also one that cannot be written, before it ends', () => {
+    assert.deepEqual(start().log, ['sent', 'written', 'noted'])
+    const { log, ended } = start({ fault: Object.assign(new Error('EIO'), { code: 'PORT_GONE' }) })
+    assert.deepEqual([log, ended[0][0]], [['sent', 'written', 'noted', 'ended'], 'PORT_GONE'])
+  })
+
+  it('bytes count from when they came, not from when they are looked at', () => {
+    const { clock, one } = start({ gap: 0 })
+    clock.wake(30)
+    one.data(Buffer.from('05', 'hex'), 28)
+    assert.equal(one.quietSince, 28)
+    clock.wake(31)
+    one.data(Buffer.from('05', 'hex'))
+    assert.equal(one.quietSince, 31)
+  })
 
   it('a timeout seen up to 10 ms late is one; later, what came meanwhile gets as much time, 250 ms at most, once', () => {
     for (const [woken, due] of [

@@ -13,8 +13,8 @@ const bench = (answer = () => undefined) => {
   const holds = []
   const intake = new Intake({
     clock,
-    data: bytes => {
-      got.push({ at: clock.now(), bytes: Buffer.from(bytes) })
+    data: (bytes, came) => {
+      got.push({ at: clock.now(), came, bytes: Buffer.from(bytes) })
       return answer(bytes)
     },
     hold: held => holds.push(held)
@@ -28,6 +28,20 @@ describe('intake', () => {
     const { intake, lengths, holds, clock } = bench()
     for (const length of [1, 513, 510]) intake.take(bytesFrom(0, length))
     assert.deepEqual([lengths(), holds, intake.waiting, clock.pending()], [[1, 513, 510], [], false, 0])
+  })
+
+  it('says when what it gives at once came; what had to wait comes now', async () => {
+    const { intake, got, clock } = bench()
+    await clock.advance(7)
+    intake.take(bytesFrom(0, 1500))
+    await clock.advance(3)
+    assert.deepEqual(
+      got.map(({ at, came, bytes }) => [at, came, bytes.length]),
+      [
+        [7, 7, 1024],
+        [8, undefined, 476]
+      ]
+    )
   })
 
   it('gives a kilobyte each millisecond, in order, and holds the source meanwhile', async () => {

@@ -56,9 +56,13 @@ class DescriptorReader {
 
   #wait() {
     if (this.#pace.sleep(this.#look)) return
+    try {
+      this.#port.poller.poll(READABLE)
+    } catch (error) {
+      return this.#done(error, 0)
+    }
     this.#polls = true
     this.#pace.watch(this.#giveUp)
-    this.#port.poller.poll(READABLE)
   }
 
   #told = error => {

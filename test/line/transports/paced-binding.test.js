@@ -279,6 +279,18 @@ describe('binding that reads by wire time', () => {
     })
   }
 
+  it('a descriptor that cannot be asked: the read fails as the system says, whatever comes behind', async () => {
+    const port = await open()
+    port.poller.poll = () => {
+      throw fault('EBADF')
+    }
+    const read = reading(port)
+    assert.equal(read.end.code, 'EBADF')
+    port.tell(null)
+    pace.hint(clock.now() + 30, true)
+    assert.deepEqual(log, ['stop'])
+  })
+
   it('what the poller asks for by itself, once a write has waited, is stopped; but not while a write waits', async () => {
     const port = await open()
     pace.hint(clock.now() + 20)

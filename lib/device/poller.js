@@ -94,7 +94,7 @@ class Poller {
   }
 
   #wake() {
-    if (this.#timer !== null) this.#clock.clearTimer(this.#timer)
+    this.#clock.clearTimer(this.#timer)
     this.#timer = null
     if (this.#times.size === 0) return
     let next = Infinity

@@ -4,7 +4,7 @@ const { decodeAnswer, describeQuery, expectedAnswer } = require('./answer')
 const { asciiLength, fromAscii, toAscii } = require('./ascii')
 const { exceptionByCode, exceptionError } = require('./exceptions')
 const { EXCEPTION, functionOf, readFunction } = require('./functions')
-const { frameTo } = require('./match')
+const { answerTo } = require('./match')
 const { check, closed, encodeQuery } = require('./query')
 const { roundUp } = require('./unit')
 
@@ -179,9 +179,9 @@ function wireOf(made, query, { station, protocol }) {
 
 function wireFor(rtu, query, { station, protocol }) {
   const send = protocol === 'ascii' ? toAscii(rtu) : rtu
-  const expected = expectedAnswer(query, station)
-  const usual = protocol === 'ascii' ? asciiLength(expected.length) : expected.length
-  return { send, usual, match: frameTo(expected, { station, fn: query.fn, protocol, sent: send }) }
+  const { length } = expectedAnswer(query, station)
+  const usual = protocol === 'ascii' ? asciiLength(length) : length
+  return { send, usual, match: answerTo(query, { station, protocol, sent: send }) }
 }
 
 function* exchange(query, talk) {

@@ -67,7 +67,10 @@ class DescriptorReader {
 
   #told = error => {
     // once somebody has waited to write, the poller asks by itself for what nobody wants to know now, on and on
-    if (!this.#polls) return void (error || this.#stop())
+    if (!this.#polls) {
+      if (!error && !this.#isWriting) stopPolling(this.#port.poller)
+      return
+    }
     this.#polls = false
     this.#pace.watch(null)
     try {
@@ -81,17 +84,15 @@ class DescriptorReader {
     }
   }
 
-  /** @returns {boolean} not while a write waits: its wait would end, too */
-  #stop() {
-    const { poller } = this.#port
-    if (poller.listenerCount('writable') > 0) return false
-    stopPolling(poller)
-    return true
+  /** Then the poller is not stopped: the wait of the write would end, too. */
+  get #isWriting() {
+    return this.#port.poller.listenerCount('writable') > 0
   }
 
   #giveUp = () => {
+    if (this.#isWriting) return
     this.#polls = false
-    if (!this.#stop()) return void (this.#polls = true)
+    stopPolling(this.#port.poller)
     this.#pace.watch(null)
     this.#wait()
   }

@@ -32,14 +32,14 @@ const openAll = async (names, all, { links, count }) => {
 /**
  * All clients in turn, some rounds. Before that all of them at the same time, as often as they need until the engine has translated what they do: who
  * reads day and night has that behind him.
- * @param {{ chunk: number, count: number, before: number, requests: number, rounds: number }} options chunk: bytes that arrive at once; before:
- *   requests before anything is measured; requests: of a round
+ * @param {{ chunk: number, count: number, precise: boolean, before: number, requests: number, rounds: number }} options chunk: bytes that arrive at
+ *   once; precise: see far-end.js; before: requests before anything is measured; requests: of a round
  * @returns {Promise<Record<string, { cpu: number, cycle: number }[]>>} ms of one request in each round, by client
  */
-const compare = async ({ chunk, count, before, requests, rounds }) => {
+const compare = async ({ chunk, count, precise, before, requests, rounds }) => {
   const all = clients()
   const names = Object.keys(all)
-  const far = await startFarEnd({ ...settings, quiet: true, chunk, lines: names.length })
+  const far = await startFarEnd({ ...settings, quiet: true, precise, chunk, lines: names.length })
   const seen = Object.fromEntries(names.map(name => [name, /** @type {any[]} */ ([])]))
   try {
     const open = await openAll(names, all, { links: far.links, count })
@@ -58,29 +58,39 @@ const compare = async ({ chunk, count, before, requests, rounds }) => {
 }
 
 /**
- * Rows of one case. What the machine does besides changes by the minute: so each round of ours is compared with that of the peer beside it, and the
- * middle one of these ratios counts.
+ * What the machine does besides changes by the minute: so each round of ours is compared with that of the peer beside it, and the middle one of these
+ * ratios counts.
+ * @param {Record<string, any[]>} seen rounds by client
+ * @param {{ name: string, own: (round: any) => number, theirs: (round: any) => number, most: (peer: string) => number }} what
+ */
+function* beside({ ours, ...peers }, { name, own, theirs, most }) {
+  const value = median(ours.map(own))
+  for (const [against, peer] of Object.entries(peers)) {
+    const ratio = median(ours.map((round, at) => own(round) / theirs(peer[at])))
+    yield { name, value, unit: 'ms', against, ratio, goal: ['<=', most(against)] }
+  }
+}
+
+/**
+ * Rows of one case. The processor time is measured beside stations that take little of it themselves, the cycle beside stations that are never late: a
+ * simulator hears a query the later the longer the pause before it was, a wire does not.
  * @param {{ chunk: number, count: number, before: number, requests: number, rounds: number, most: Record<string, number> }} each most: that our
  *   processor time may be of the peer's, by peer
  */
 async function* comparison({ most, ...each }) {
-  const { ours, ...peers } = await compare(each)
   const arrival = each.chunk === 1 ? 'byte by byte' : `${each.chunk} bytes at once`
   const name = `${each.count} registers at ${BAUD} bit/s, ${arrival}`
-  const cpu = row => row.cpu
-  const cycle = row => row.cycle - SILENCE
-  for (const [against, peer] of Object.entries(peers)) {
-    const row = (what, own, theirs, goal) => ({
-      name: `${name}, ${what}`,
-      value: median(ours.map(own)),
-      unit: 'ms',
-      against,
-      ratio: median(ours.map((round, at) => own(round) / theirs(peer[at]))),
-      goal
-    })
-    yield row('processor', cpu, cpu, ['<=', most[against]])
-    yield row('cycle less the silence of RTU', cycle, round => round.cycle, ['<=', 1])
-  }
+  const cpu = round => round.cpu
+  const work = await compare({ ...each, precise: false })
+  yield* beside(work, { name: `${name}, processor`, own: cpu, theirs: cpu, most: peer => most[peer] })
+  // what they do is translated by now
+  const pace = await compare({ ...each, precise: true, before: WARM_UP })
+  yield* beside(pace, {
+    name: `${name}, cycle less the silence of RTU`,
+    own: round => round.cycle - SILENCE,
+    theirs: round => round.cycle,
+    most: () => 1
+  })
 }
 
 module.exports = { comparison }

@@ -12,20 +12,40 @@ const path = require('node:path')
 const { createLine, createRealClock, serveOnPty } = require('../lib/sim')
 
 const SPIN = 1.5 // ms
+const AWAKE = 15 // ms: longer than a master pauses, or its query takes
 const GAP = 25 // ms: pauses of programs inside of a frame, which a wire does not have
 
+/** Keeps the process from sleeping for a while after each call: who sleeps hears late. */
+const wakefulness = now => {
+  let until = -Infinity
+  let awake = false
+  const look = () => {
+    awake = now() < until
+    if (awake) setImmediate(look)
+  }
+  return () => {
+    until = now() + AWAKE
+    if (!awake) look()
+  }
+}
+
 /**
- * A clock whose timers are not late: the last moments before each are waited for actively. The bytes of a wire come when they are due, those of a
- * simulator a millisecond later; where a bench measures such short times, the simulator must not be what it measures. Takes a good part of a core.
+ * A clock whose timers are not late: the last moments before each are waited for actively, and those behind it, when the next query may come. The
+ * bytes of a wire come when they are due, and it hears them at once; a simulator is late by a part of a millisecond in both, the more the longer it
+ * has slept. Where a bench measures such short times, the simulator must not be what it measures. Takes most of a core.
  */
 const preciseClock = () => {
   const { now, wall } = createRealClock()
+  const stayAwake = wakefulness(now)
   const arm = timer => {
     const left = timer.at - now()
     if (timer.fn === null) return
     if (left > SPIN) timer.waits = setTimeout(arm, left - SPIN, timer)
     else if (left > 0) setImmediate(arm, timer)
-    else timer.fn()
+    else {
+      timer.fn()
+      stayAwake()
+    }
   }
   const setTimer = (fn, ms) => {
     const timer = { fn, at: now() + ms, waits: /** @type {any} */ (null) }
@@ -42,17 +62,20 @@ const preciseClock = () => {
   return { now, wall, setTimer, clearTimer }
 }
 
+/** @param {any} station number of an NX PLC, or what `createLine` takes */
+const withGap = station => ({ gap: GAP, ...(typeof station === 'number' ? { station } : station) })
+
 /** What `createLine` is given. */
 const lineSettings = ({ precise = false, stations, ...settings }) => {
   if (!precise) return { stations, ...settings }
-  return { ...settings, clock: preciseClock(), stations: stations.map(station => ({ station, gap: GAP })) }
+  return { ...settings, clock: preciseClock(), stations: stations.map(withGap) }
 }
 
 const linkIn = (folder, n) => path.join(folder, `line${n}`)
 
 /**
  * @param {Record<string, any> & { lines?: number, precise?: boolean }} settings of `createLine`; lines: so many of them, default one; precise: bytes are
- *   never late, for which the process takes most of a core (stations are numbers then)
+ *   never late and heard at once, for which the process takes most of a core
  * @returns {Promise<{ link: string, links: string[], close: () => Promise<void> }>} links: the ports to open; link: the first
  */
 async function startFarEnd({ lines = 1, ...settings }) {

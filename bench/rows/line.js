@@ -2,7 +2,7 @@
 
 /**
  * Cycles of an NX PLC over a virtual serial port whose other end keeps the pace of 38400 bit/s, in a process of its own.
- * Its bytes are never late: what is above the limit is ours. Limit: the bytes' own time on the wire, the station's turnaround and the gaps that the manual asks for.
+ * Its bytes are never late, and it hears at once: what is above the limit is ours. Limit: the bytes' own time on the wire, the station's turnaround and the gaps that the manual asks for.
  */
 const { openNxPlc } = require('../../lib')
 const { startFarEnd } = require('../far-end')

@@ -25,6 +25,8 @@ const find = (flow, type, name) => {
   return found[0]
 }
 
+const mqttNodes = flow => flow.filter(({ type, d }) => /^mqtt (in|out)$/.test(type) && !d)
+
 /** A broker, a client of it that hears what it has subscribed to, and a Node-RED. */
 async function startBench() {
   const port = await freePort(0)
@@ -37,11 +39,15 @@ async function startBench() {
   const red = await startNodeRed()
   const subscribed = new Set()
 
+  /** What Node-RED is to publish before that is lost. */
+  const isConnected = ({ id }) => /common\.status\.connected$/.test(red.status.get(id)?.text ?? '')
   /** Deploys an example alone. */
   const deploy = async (flow, edit = node => node) => {
     const ready = flow.map(node => (node.type === 'mqtt-broker' ? { ...node, port: String(port) } : node)).map(edit)
+    red.status.clear()
     await red.deploy(ready)
-    await until(() => [...red.status].length > 0, { what: 'a status' })
+    await until(() => red.status.size > 0, { what: 'a status' })
+    await until(() => mqttNodes(ready).every(isConnected), { what: 'the broker' })
     return ready
   }
   const subscribe = async topics => {

@@ -14,8 +14,8 @@ const { PlcError } = require('../error')
  */
 
 /**
- * Places of the points of one kind in the list, in order of address, and those of one address as they came.
- * @returns {Float64Array}
+ * Address and place in the list of the points of one kind, as one number each: in order of address, and those of one address as they came.
+ * @returns {Float64Array} address × size of the list + place
  */
 const inOrder = (points, kind) => {
   const size = points.length
@@ -23,22 +23,24 @@ const inOrder = (points, kind) => {
   let count = 0
   for (let at = 0; at < size; at++) if (points[at].kind === kind) keys[count++] = points[at].address * size + at
   // plain numbers are sorted many times as fast as objects
-  return keys
-    .subarray(0, count)
-    .sort()
-    .map(key => key % size)
+  return keys.subarray(0, count).sort()
 }
 
-/** The group of these addresses among the last ones, which are ordered by their ends where they begin at the same address. */
-const groupAmong = (groups, { kind, address, count = 1 }) => {
-  const end = address + count
+/** Where the group of these addresses stands, or belongs, among the last ones, which are ordered by their ends where they begin at the same address. */
+const placeAmong = (groups, start, end) => {
   let at = groups.length
-  while (at > 0 && groups[at - 1].start === address && groups[at - 1].end > end) at--
+  while (at > 0 && groups[at - 1].start === start && groups[at - 1].end > end) at--
   const known = groups[at - 1]
-  if (known && known.start === address && known.end === end) return known
-  const group = { kind, start: address, end, points: [] }
-  groups.splice(at, 0, group)
-  return group
+  return known && known.start === start && known.end === end ? at - 1 : at
+}
+
+/** @param {Group[]} groups of one kind @param {Group} group one point more */
+const add = (groups, group) => {
+  const { start, end, points } = group
+  const at = placeAmong(groups, start, end)
+  if (at === groups.length) groups.push(group)
+  else if (groups[at].start === start && groups[at].end === end) groups[at].points.push(...points)
+  else groups.splice(at, 0, group)
 }
 
 /**
@@ -51,7 +53,12 @@ const groupAmong = (groups, { kind, address, count = 1 }) => {
 const groupsOf = (points, kind, pointAt = at => at) => {
   /** @type {Group[]} */
   const groups = []
-  for (const at of inOrder(points, kind)) groupAmong(groups, points[at]).points.push(pointAt(at))
+  const keys = inOrder(points, kind)
+  for (let n = 0; n < keys.length; n++) {
+    const at = keys[n] % points.length
+    const { address, count = 1 } = points[at]
+    add(groups, { kind, start: address, end: address + count, points: [pointAt(at)] })
+  }
   return groups
 }
 

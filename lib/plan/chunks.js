@@ -14,21 +14,23 @@ const { wordsOf } = require('./mixed')
  * @property {{ count: number, answer: number } | null} share what it takes in a mixed request
  */
 
+/** @typedef {Group | { start: number, end: number, group: Group }} Place where a value stands: the value itself, or a bit among the words */
+
 /**
  * Where values stand, in order of address: bits of words that are the same memory stand among the words.
- * @param {Group[]} groups
+ * @param {Group[]} groups in order, one kind after the other
  * @param {import('./model').Model} model
  */
 const placesOf = (groups, model) => {
-  /** @type {Record<'word'|'bit', { start: number, end: number, group: Group }[]>} */
+  /** @type {Record<'word'|'bit', Place[]>} */
   const places = { word: [], bit: [] }
+  let among = 0
   for (const group of groups) {
-    const span = group.kind === 'word' ? group : wordsOf(group)
-    const among = group.kind === 'word' || model.isJoint(span)
-    const { start, end } = among ? span : group
-    places[among ? 'word' : 'bit'].push({ start, end, group })
+    const span = group.kind === 'word' ? null : wordsOf(group)
+    if (!span || !model.isJoint(span)) places[group.kind].push(group)
+    else among = places.word.push({ start: span.start, end: span.end, group })
   }
-  for (const own of [places.word, places.bit]) own.sort((a, b) => a.start - b.start || a.end - b.end)
+  if (among > 0) places.word.sort((a, b) => a.start - b.start || a.end - b.end)
   return places
 }
 
@@ -71,7 +73,9 @@ const chunksIn = (space, places, model) => {
     if (start < last.end) return longest
     return model.borderAfter(space, start - 1) === start ? 0 : grain
   }
-  for (const { start, end, group } of places) {
+  for (const place of places) {
+    const { start, end } = place
+    const group = 'group' in place ? place.group : place
     if (last && start <= last.end && Math.max(end, last.end) - last.start <= mostAt(start)) {
       last.end = Math.max(last.end, end)
       last.groups.push(group)

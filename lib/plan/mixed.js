@@ -54,13 +54,19 @@ const sizeOf = ({ bits, words }) => ({ count: bits.size + words.size, answer: bi
 /** Whether one request holds so many. @param {Asked} asked @param {number} most */
 const fits = ({ bits, words }, most) => bits.size + words.size <= most && canName(bits) && canName(words)
 
-const listOf = (kind, addresses) =>
-  Array.from(addresses)
-    .sort((a, b) => a - b)
-    .map(address => ({ kind, address }))
+/** Addresses of one kind, in order, behind those that are there. */
+const append = (list, kind, addresses) => {
+  for (const address of Float64Array.from(addresses).sort()) list.push({ kind, address })
+}
 
 /** @param {Asked} asked @returns {Address[]} */
-const addressesOf = ({ bits, words }) => [...listOf('bit', bits), ...listOf('word', words)]
+const addressesOf = ({ bits, words }) => {
+  /** @type {Address[]} */
+  const list = []
+  append(list, 'bit', bits)
+  append(list, 'word', words)
+  return list
+}
 
 const BIT = { count: 1, answer: 1 }
 const WORD = { count: 1, answer: 2 }
@@ -70,9 +76,9 @@ const WORD = { count: 1, answer: 2 }
  * several of a word, and those with their word, go as the word.
  */
 const shareOfOne = ({ space, start, groups }) => {
-  const [{ start: bit, end }] = groups
-  const isSingle = groups.length === 1 && groups[0].kind === 'bit' && end - bit === 1
-  if (isSingle && bit <= LAST_MIXED) return BIT
+  const group = groups[0]
+  const isSingle = groups.length === 1 && group.kind === 'bit' && group.end - group.start === 1
+  if (isSingle && group.start <= LAST_MIXED) return BIT
   return space === 'word' && start <= LAST_MIXED ? WORD : null
 }
 

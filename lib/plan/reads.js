@@ -103,10 +103,27 @@ const ordered = frames => {
   return last ? [first, ...others, last] : frames
 }
 
+/** So many blocks are needed at least, if they have no holes. @param {import('./blocks').Group[]} groups in order, one kind after the other */
+const runsOf = groups => {
+  let runs = 0
+  let last = groups[0].kind
+  let until = -Infinity
+  for (const { kind, start, end } of groups) {
+    if (kind !== last || start > until) {
+      runs++
+      last = kind
+      until = end
+    } else if (end > until) until = end
+  }
+  return runs
+}
+
 const bestPlan = (groups, model, limits) => {
   if (groups.length <= MOST_EXACT) return exactPlan(groups, model)
   const priced = pricedPlan(groups, model)
   const found = groups.length <= MOST_GROUPS_MERGED ? merged(priced, model) : priced
+  // repetition saves less than one of them
+  if ((runsOf(groups) - 1) * model.frameCost >= cycleCost(found)) return found
   const plain = plainBlocks(groups, model, limits.bounds)
   // of equal plans the plain one
   const isPlain =

@@ -6,20 +6,62 @@
  * @typedef {import('./chunks').Chunk} Chunk
  */
 
-/** The chunk after the last one that a block can hold which begins at this one. */
-const reachOf = (chunks, first, model) => {
-  const { space, start } = chunks[first]
-  const border = model.borderAfter(space, start)
-  const most = model.most[space]
-  let end = start
-  let at = first
-  for (; at < chunks.length && chunks[at].space === space; at++) {
-    const chunk = chunks[at]
-    if (at > first && (!model.mayBridge(space, end, chunk.start) || chunk.end > Math.max(border, end))) break
-    end = Math.max(end, chunk.end)
-    if (end - start > most) break
+/** Of a chunk with a word: it does not stand in bits. */
+const NO_BIT = -1e9
+
+/** What a search needs of the chunks, as plain numbers. @param {Chunk[]} chunks @param {import('./model').Model} model */
+const columnsOf = (chunks, model) => {
+  const column = () => new Int32Array(chunks.length)
+  const columns = {
+    start: column(),
+    end: column(),
+    /** first bit and the one after the last, where none of the values is a word */
+    firstBit: column().fill(NO_BIT),
+    lastBit: column(),
+    /** addresses and bytes of the answer in a mixed request; 0: it cannot hold them */
+    shares: column(),
+    answers: column(),
+    /** 1: a block may go on from the chunk before it */
+    follows: column()
   }
-  return at
+  let last = chunks[0]
+  for (let at = 0; at < chunks.length; at++) {
+    const chunk = chunks[at]
+    columns.start[at] = chunk.start
+    columns.end[at] = chunk.end
+    if (chunk.bits) {
+      columns.firstBit[at] = chunk.bits.first
+      columns.lastBit[at] = chunk.bits.last
+    }
+    if (chunk.share) {
+      columns.shares[at] = chunk.share.count
+      columns.answers[at] = chunk.share.answer
+    }
+    if (last.space === chunk.space && model.mayBridge(chunk.space, last.end, chunk.start)) columns.follows[at] = 1
+    last = chunk
+  }
+  return columns
+}
+
+/**
+ * For each chunk the one after the last that a block can hold which begins there. They end in the order in which they begin; so what a block holds, a
+ * block that begins later can hold as well.
+ */
+const reaches = (chunks, { start, end, follows }, model) => {
+  const reach = new Int32Array(chunks.length)
+  let at = 0
+  for (let first = 0; first < chunks.length; first++) {
+    const { space } = chunks[first]
+    const most = model.most[space]
+    const border = model.borderAfter(space, start[first])
+    if (at <= first) at = end[first] - start[first] > most ? first : first + 1
+    while (at > first && at < chunks.length && follows[at] === 1) {
+      if (end[at] > Math.max(border, end[at - 1]) || end[at] - start[first] > most) break
+      at++
+    }
+    reach[first] = at
+  }
+  return reach
 }
 
 /** What blocks cost, by how many bits or words they have. */
@@ -30,19 +72,15 @@ const costsByLength = model => {
 }
 
 /** Costs of the blocks that begin at a chunk: of this one alone, with the next one, and so on. */
-const fillCosts = (chunks, { from, to }, { costs, place, byLength }) => {
-  const { space, start, bits } = chunks[from]
-  const own = byLength[space]
-  let end = start
-  let onlyBits = bits !== null
-  for (let at = from; at < to; at++) {
-    const chunk = chunks[at]
-    end = Math.max(end, chunk.end)
-    costs[place + at - from] = own[end - start]
-    onlyBits &&= chunk.bits !== null
-    // the same as bits is shorter where there are few
-    const span = onlyBits ? chunk.bits.last - bits.first : Infinity
-    if (span < byLength.bit.length) costs[place + at - from] = Math.min(own[end - start], byLength.bit[span])
+const fillCosts = (costs, { from, to, place }, { own, bit, columns }) => {
+  const { start, end, firstBit, lastBit } = columns
+  const first = start[from]
+  for (let at = from; at < to; at++) costs[place + at - from] = own[end[at] - first]
+  // the same as bits is shorter where there are few
+  for (let at = from; at < to && firstBit[at] !== NO_BIT; at++) {
+    const span = lastBit[at] - firstBit[from]
+    if (span >= bit.length) break
+    if (bit[span] < costs[place + at - from]) costs[place + at - from] = bit[span]
   }
 }
 
@@ -54,20 +92,17 @@ const fillCosts = (chunks, { from, to }, { costs, place, byLength }) => {
  */
 const chunkTable = (chunks, model) => {
   const count = chunks.length
+  const columns = columnsOf(chunks, model)
+  const reach = reaches(chunks, columns, model)
   const first = new Int32Array(count + 1)
-  for (let at = 0; at < count; at++) first[at + 1] = first[at] + reachOf(chunks, at, model) - at
+  for (let at = 0; at < count; at++) first[at + 1] = first[at] + reach[at] - at
   const costs = new Float64Array(first[count])
   const byLength = costsByLength(model)
-  const shares = new Int32Array(count)
-  const answers = new Int32Array(count)
-  for (let at = 0; at < count; at++) {
-    const place = first[at]
-    fillCosts(chunks, { from: at, to: at + first[at + 1] - place }, { costs, place, byLength })
-    const { share } = chunks[at]
-    shares[at] = share ? share.count : 0
-    answers[at] = share ? share.answer : 0
+  for (let from = 0; from < count; from++) {
+    const block = { from, to: reach[from], place: first[from] }
+    fillCosts(costs, block, { own: byLength[chunks[from].space], bit: byLength.bit, columns })
   }
-  return { count, shares, answers, costs, first }
+  return { count, shares: columns.shares, answers: columns.answers, costs, first }
 }
 
 module.exports = { chunkTable }

@@ -2,7 +2,7 @@
 const { chunksOf } = require('./chunks')
 const { cycleCost } = require('./model')
 const { pack, roomOf } = require('./pack')
-const { chunkTable } = require('./table')
+const { NO_BIT, chunkTable, costOf } = require('./table')
 
 /**
  * A plan of many values. Where an address of a mixed request has a price, blocks and mixed requests no longer depend on each other, and the
@@ -11,6 +11,7 @@ const { chunkTable } = require('./table')
  * @typedef {import('./model').Frame} Frame
  * @typedef {import('./blocks').Group} Group
  * @typedef {import('./pack').Bin} Bin
+ * @typedef {import('./table').Table} Table
  * @typedef {{ from: number, to: number, cost: number }} Block chunks by their places in the table
  * @typedef {{ mixed: number[], blocks: Block[] }} Choice
  */
@@ -24,11 +25,12 @@ const MIXED = -1
 
 /**
  * Where the last request of the cheapest choice up to each chunk begins; MIXED: the chunk goes into a mixed one.
- * @param {ReturnType<typeof chunkTable>} table
+ * @param {Table} table
  * @param {number} price
  * @param {{ best: Float64Array, from: Int32Array }} notes for each chunk, and one more
  */
-const choose = ({ count, shares, answers, costs, first }, price, { best, from }) => {
+const choose = (table, price, { best, from }) => {
+  const { count, words, shares, answers, start, end, reach, firstBit } = table
   best.fill(Infinity)
   best[0] = 0
   for (let at = 0; at < count; at++) {
@@ -38,27 +40,46 @@ const choose = ({ count, shares, answers, costs, first }, price, { best, from })
       best[at + 1] = mixed
       from[at + 1] = MIXED
     }
-    const last = first[at + 1]
-    for (let place = first[at], next = at + 1; place < last; place++, next++) {
-      const cost = here + costs[place]
+    const own = at < words ? table.word : table.bit
+    const first = start[at]
+    const last = reach[at]
+    for (let to = at + 1; to <= last; to++) {
+      const cost = here + own[end[to - 1] - first]
       // of equal ones the block that begins last: those before it are full
-      if (cost <= best[next]) {
-        best[next] = cost
-        from[next] = at
+      if (cost <= best[to]) {
+        best[to] = cost
+        from[to] = at
       }
     }
+    if (at < words && firstBit[at] !== NO_BIT) chooseBits(table, at, { best, from })
   }
   return from
 }
 
+/** Blocks of bits that stand among words: shorter where there are few. */
+const chooseBits = ({ reach, firstBit, lastBit, bit }, at, { best, from }) => {
+  const here = best[at]
+  const first = firstBit[at]
+  const last = reach[at]
+  for (let to = at + 1; to <= last && firstBit[to - 1] !== NO_BIT; to++) {
+    const span = lastBit[to - 1] - first
+    if (span >= bit.length) return
+    const cost = here + bit[span]
+    if (cost <= best[to]) {
+      best[to] = cost
+      from[to] = at
+    }
+  }
+}
+
 /** @returns {Choice} */
-const trace = ({ count, costs, first }, from) => {
+const trace = (table, from) => {
   const mixed = []
   const blocks = []
-  for (let to = count; to > 0;) {
+  for (let to = table.count; to > 0;) {
     const start = from[to] === MIXED ? to - 1 : from[to]
     if (from[to] === MIXED) mixed.push(start)
-    else blocks.push({ from: start, to, cost: costs[first[start] + to - start - 1] })
+    else blocks.push({ from: start, to, cost: costOf(table, start, to) })
     to = start
   }
   return { mixed, blocks }
@@ -174,7 +195,7 @@ const pricedPlan = (groups, model) => {
   const chunks = chunksOf(groups, model)
   const table = chunkTable(chunks, model)
   const search = createSearch(table, model)
-  explore(search, { steps: table.costs.length + table.count, mostMixed: model.mostMixed })
+  explore(search, { steps: table.blocks + table.count, mostMixed: model.mostMixed })
   const { blocks, bins } = search.best
   const sets = [
     ...blocks.map(({ from, to }) => chunks.slice(from, to)),

@@ -65,44 +65,44 @@ const reaches = (chunks, { start, end, follows }, model) => {
 }
 
 /** What blocks cost, by how many bits or words they have. */
-const costsByLength = model => {
-  const costsOf = kind =>
-    Float64Array.from({ length: model.most[kind] + 1 }, (_, count) => model.blockCost(kind, count))
-  return { bit: costsOf('bit'), word: costsOf('word') }
+const costsByLength = (model, kind) => {
+  const costs = new Float64Array(model.most[kind] + 1)
+  for (let count = 0; count < costs.length; count++) costs[count] = model.blockCost(kind, count)
+  return costs
 }
 
-/** Costs of the blocks that begin at a chunk: of this one alone, with the next one, and so on. */
-const fillCosts = (costs, { from, to, place }, { own, bit, columns }) => {
-  const { start, end, firstBit, lastBit } = columns
-  const first = start[from]
-  for (let at = from; at < to; at++) costs[place + at - from] = own[end[at] - first]
-  // the same as bits is shorter where there are few
-  for (let at = from; at < to && firstBit[at] !== NO_BIT; at++) {
-    const span = lastBit[at] - firstBit[from]
-    if (span >= bit.length) break
-    if (bit[span] < costs[place + at - from]) costs[place + at - from] = bit[span]
-  }
-}
+const isWord = ({ space }) => space === 'word'
+
+/** @typedef {ReturnType<typeof chunkTable>} Table */
 
 /**
- * @param {Chunk[]} chunks in order of address, one space after the other
+ * @param {Chunk[]} chunks in order of address, those of words first
  * @param {import('./model').Model} model
- * @returns {{ count: number, shares: Int32Array, answers: Int32Array, costs: Float64Array, first: Int32Array }} `shares`, `answers`: addresses and
- *   bytes in a mixed request (0: it cannot hold them); `costs` from `first[chunk]` on: of the blocks that begin there
  */
 const chunkTable = (chunks, model) => {
-  const count = chunks.length
   const columns = columnsOf(chunks, model)
   const reach = reaches(chunks, columns, model)
-  const first = new Int32Array(count + 1)
-  for (let at = 0; at < count; at++) first[at + 1] = first[at] + reach[at] - at
-  const costs = new Float64Array(first[count])
-  const byLength = costsByLength(model)
-  for (let from = 0; from < count; from++) {
-    const block = { from, to: reach[from], place: first[from] }
-    fillCosts(costs, block, { own: byLength[chunks[from].space], bit: byLength.bit, columns })
+  return {
+    ...columns,
+    count: chunks.length,
+    /** so many of them stand among words */
+    words: chunks.filter(isWord).length,
+    /** the chunk after the last that a block can hold which begins there */
+    reach,
+    /** all blocks that there can be */
+    blocks: reach.reduce((sum, end, at) => sum + end - at, 0),
+    word: costsByLength(model, 'word'),
+    bit: costsByLength(model, 'bit')
   }
-  return { count, shares: columns.shares, answers: columns.answers, costs, first }
 }
 
-module.exports = { chunkTable }
+/** What a block costs. @param {Table} table @param {number} from its first chunk @param {number} to the one after its last */
+const costOf = ({ words, start, end, firstBit, lastBit, word, bit }, from, to) => {
+  const own = from < words ? word : bit
+  const cost = own[end[to - 1] - start[from]]
+  for (let at = from; at < to; at++) if (firstBit[at] === NO_BIT) return cost
+  // the same as bits is shorter where there are few
+  return Math.min(cost, bit[lastBit[to - 1] - firstBit[from]] ?? Infinity)
+}
+
+module.exports = { NO_BIT, chunkTable, costOf }

@@ -73,6 +73,7 @@ class Model {
   #limits
   #rules
   #joint
+  #sharing
 
   /** @param {import('./reads').Limits} limits */
   constructor(limits) {
@@ -84,6 +85,7 @@ class Model {
     this.most = { bit: Math.min(readBits, info), word: Math.min(readWords, info >> 1) }
     /** addresses in one mixed request */
     this.mostMixed = Math.min(readMixed, info >> 1)
+    this.#sharing = { most: this.mostMixed, isJoint: this.isJoint }
     /** whether the station repeats its last request */
     this.repeats = again !== undefined
     this.frameCost = frameCost
@@ -184,7 +186,7 @@ class Model {
 
   /** What values take in a mixed request: addresses and bytes of the answer; null: it cannot hold them. @param {any} chunk */
   mixedShare(chunk) {
-    return shareOf(chunk, { most: this.mostMixed, isJoint: this.isJoint })
+    return shareOf(chunk, this.#sharing)
   }
 
   /** All the ways to read these values with one request. @param {Group[]} groups @returns {Frame[]} */

@@ -82,6 +82,17 @@ const shareOfOne = ({ space, start, groups }) => {
   return space === 'word' && start <= LAST_MIXED ? WORD : null
 }
 
+const areWords = groups => {
+  for (const { kind } of groups) if (kind !== 'word') return false
+  return true
+}
+
+/** Words that touch: all from the first to the last. */
+const shareOfWords = ({ start, end }, most) => {
+  const count = end - start
+  return count <= most && end - 1 <= LAST_MIXED ? { count, answer: 2 * count } : null
+}
+
 /**
  * What a chunk takes in a mixed request; null: it cannot hold it.
  * @param {{ space: 'bit'|'word', start: number, end: number, groups: Group[] }} chunk
@@ -90,6 +101,7 @@ const shareOfOne = ({ space, start, groups }) => {
  */
 const shareOf = (chunk, { most, isJoint }) => {
   if (chunk.end - chunk.start === 1) return most > 0 ? shareOfOne(chunk) : null
+  if (areWords(chunk.groups)) return shareOfWords(chunk, most)
   const asked = askedOf(chunk.groups, isJoint)
   return fits(asked, most) ? sizeOf(asked) : null
 }

@@ -95,7 +95,7 @@ class Model {
 
   /** Whether these words and their bits are one memory. @param {{ start: number, end: number }} span */
   isJoint = ({ start, end }) => {
-    for (const [from, to] of this.#joint) if (from <= start && end <= to) return true
+    for (const span of this.#joint) if (span[0] <= start && end <= span[1]) return true
     return false
   }
 

@@ -442,7 +442,8 @@ describe('line: one step, in a process that is late', () => {
     character = 1,
     waiting = false,
     before = '',
-    fault = /** @type {any} */ (undefined)
+    fault = /** @type {any} */ (undefined),
+    told = /** @type {any[] | null} */ (null)
   } = {}) => {
     const clock = createLateClock()
     const ended = []
@@ -451,7 +452,8 @@ describe('line: one step, in a process that is late', () => {
       name: 'mill',
       write: (_, done) => {
         log.push('written')
-        done(fault)
+        if (told) told.push(done)
+        else done(fault)
       },
       hint: () => {},
       waiting: () => waiting,
@@ -476,6 +478,21 @@ describe('line: one step, in a process that is late', () => {
     assert.deepEqual(start().log, ['sent', 'written', 'noted'])
     const { log, ended } = start({ fault: Object.assign(new Error('EIO'), { code: 'PORT_GONE' }) })
     assert.deepEqual([log, ended[0][0]], [['sent', 'written', 'noted', 'ended'], 'PORT_GONE'])
+  })
+
+  it('a write that is told of late, or twice, does not touch the step behind it', () => {
+    const told = []
+    const { clock, one } = start({ told })
+    one.abort()
+    clock.wake(30)
+    one.start(STEP, { gap: 0, station: 5, sent() {}, done() {} })
+    const [first, second] = told
+    second()
+    const end = one.sendEnd
+    clock.wake(60)
+    first()
+    second()
+    assert.equal(one.sendEnd, end)
   })
 
   it('bytes count from when they came, not from when they are looked at', () => {

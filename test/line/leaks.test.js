@@ -4,12 +4,25 @@ const assert = require('node:assert/strict')
 const fs = require('node:fs')
 const path = require('node:path')
 const { createPool } = require('../../lib/line')
+const { serial } = require('../../lib/line/transports/serial')
 const { createPty } = require('../../lib/sim/pty')
 const { createBench } = require('./support/bench')
 const { fastClock, openFiles, reached, tempFolder } = require('./support/real')
 const toy = require('./support/toy')
 
 const resources = () => process.getActiveResourcesInfo().sort().join(' ')
+/** Objects that a garbage collection leaves, of those that are only held weakly here. @param {WeakRef<any>[]} refs */
+const leftOf = async refs => {
+  require('node:v8').setFlagsFromString('--expose-gc')
+  const collect = require('node:vm').runInNewContext('gc')
+  const left = () => refs.filter(ref => ref.deref() !== undefined).length
+  for (let i = 0; i < 20 && left() > 0; i++) {
+    await turn()
+    collect()
+  }
+  return left()
+}
+
 const turn = () => new Promise(resolve => setImmediate(resolve))
 
 /** Waits (some turns of the loop) until what the process holds is as before. */
@@ -51,9 +64,12 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     pty.onData(bytes => pty.write(toy.answer(bytes[1], [1], bytes[2])))
     const clock = fastClock(10)
     const pool = createPool({ clock, random: () => 0.5 })
+    /** @type {WeakRef<any>[]} */
+    const lines = []
     const cycle = async n => {
       const lease = pool.open({ path: link, baudRate: 115200, slack: 2000, latenessBound: 1 }, { id: 'a', name: 'a' })
       await reached(lease, 'open')
+      lines.push(new WeakRef(lease.line))
       const asked = lease.run(() => toy.ask(1, { timeout: 5000 }), { station: n })
       // some in the middle of an exchange
       if (n % 2 === 0) await asked
@@ -66,6 +82,8 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     assert.equal(await settledTo(handles), handles)
     assert.equal(openFiles(), files)
     assert.equal(clock.pending(), 0)
+    // the poller of bindings-cpp lives as long as the process: whoever it knows would, too
+    assert.equal(await leftOf(lines), 0)
     pty.close()
     fs.rmSync(folder, { recursive: true })
   })
@@ -76,7 +94,14 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     const pty = createPty({ link })
     pty.onData(bytes => pty.write(toy.answer(bytes[1], [1], bytes[2])))
     // no faster: a busy machine takes its time to take the bytes
-    const pool = createPool({ clock: fastClock(15), random: () => 0 })
+    /** @type {WeakRef<any>[]} */
+    const made = []
+    const noted = (...given) => {
+      const transport = serial(.../** @type {[any, any]} */ (given))
+      made.push(new WeakRef(transport))
+      return transport
+    }
+    const pool = createPool({ clock: fastClock(15), random: () => 0, transports: { serial: noted } })
     const lease = pool.open({ path: link, baudRate: 115200, slack: 5000, latenessBound: 1 }, { id: 'a', name: 'a' })
     let files, handles
     for (let n = 0; n < 50; n++) {
@@ -92,6 +117,8 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     assert.equal(openFiles(), files)
     await settledTo(handles)
     assert.equal(lease.line.stats().reconnects, 50)
+    // the one before may be known by the error that it ended with
+    assert.equal(await leftOf(made.slice(0, -2)), 0)
     await lease.release()
     pty.close()
     fs.rmSync(folder, { recursive: true })

@@ -10,6 +10,8 @@ const isAgain = error => error.code === 'EAGAIN' || error.code === 'EWOULDBLOCK'
 const canceled = () => Object.assign(new Error('Port is not open'), { canceled: true })
 const hungUp = () => Object.assign(new Error('the port has hung up'), { disconnect: true })
 
+const nobody = () => {}
+
 /** @returns {number} how many bytes the system took at once */
 const writeNow = (fd, bytes) => {
   try {
@@ -34,7 +36,7 @@ class DescriptorReader {
   #offset = 0
   #length = 0
   /** @type {(error: any, bytesRead: number) => void} */
-  #done = () => {}
+  #done = nobody
   /** the descriptor is asked */
   #polls = false
 
@@ -43,6 +45,14 @@ class DescriptorReader {
     this.#port = port
     this.#pace = pace
     port.poller.on('readable', this.#told)
+  }
+
+  /** The port was closed. Its poller may live as long as the process (bindings-cpp): it must not know who reads. */
+  end() {
+    this.#port.poller.off('readable', this.#told)
+    if (this.#polls) this.#told(canceled())
+    this.#buffer = null
+    this.#done = nobody
   }
 
   /** One read at a time. */
@@ -150,6 +160,7 @@ function pacedBinding(binding, pace) {
         const closed = close()
         // who sleeps finds it closed
         pace.stop()
+        reader?.end()
         return closed
       }
       return port

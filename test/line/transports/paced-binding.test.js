@@ -42,6 +42,10 @@ describe('binding that reads by wire time', () => {
           assert.equal(event, 'readable')
           port.tell = listener
         },
+        off(event, listener) {
+          assert.deepEqual([event, listener], ['readable', port.tell])
+          port.tell = () => {}
+        },
         poll(flag) {
           assert.equal(flag, 1)
           log.push('readable')

@@ -2391,18 +2391,34 @@ var nxlineSerialPlc = (() => {
       };
       var sizeOf = ({ bits, words }) => ({ count: bits.size + words.size, answer: bits.size + 2 * words.size });
       var fits = ({ bits, words }, most) => bits.size + words.size <= most && canName(bits) && canName(words);
-      var listOf = (kind, addresses) => Array.from(addresses).sort((a, b) => a - b).map((address) => ({ kind, address }));
-      var addressesOf = ({ bits, words }) => [...listOf("bit", bits), ...listOf("word", words)];
+      var append = (list, kind, addresses) => {
+        for (const address of Float64Array.from(addresses).sort()) list.push({ kind, address });
+      };
+      var addressesOf = ({ bits, words }) => {
+        const list = [];
+        append(list, "bit", bits);
+        append(list, "word", words);
+        return list;
+      };
       var BIT = { count: 1, answer: 1 };
       var WORD = { count: 1, answer: 2 };
       var shareOfOne = ({ space, start, groups }) => {
-        const [{ start: bit, end }] = groups;
-        const isSingle = groups.length === 1 && groups[0].kind === "bit" && end - bit === 1;
-        if (isSingle && bit <= LAST_MIXED) return BIT;
+        const group = groups[0];
+        const isSingle = groups.length === 1 && group.kind === "bit" && group.end - group.start === 1;
+        if (isSingle && group.start <= LAST_MIXED) return BIT;
         return space === "word" && start <= LAST_MIXED ? WORD : null;
+      };
+      var areWords = (groups) => {
+        for (const { kind } of groups) if (kind !== "word") return false;
+        return true;
+      };
+      var shareOfWords = ({ start, end }, most) => {
+        const count = end - start;
+        return count <= most && end - 1 <= LAST_MIXED ? { count, answer: 2 * count } : null;
       };
       var shareOf = (chunk, { most, isJoint }) => {
         if (chunk.end - chunk.start === 1) return most > 0 ? shareOfOne(chunk) : null;
+        if (areWords(chunk.groups)) return shareOfWords(chunk, most);
         const asked = askedOf(chunk.groups, isJoint);
         return fits(asked, most) ? sizeOf(asked) : null;
       };
@@ -2453,7 +2469,7 @@ var nxlineSerialPlc = (() => {
         return { kind, start, end };
       };
       var QUERY = 3;
-      var _limits, _rules, _joint, _Model_instances, sizeOf_fn, crosses_fn, prices_fn, bridges_fn, block_fn, asWords_fn, asBits_fn, asMixed_fn;
+      var _limits, _rules, _joint, _sharing, _Model_instances, sizeOf_fn, crosses_fn, prices_fn, bridges_fn, block_fn, asWords_fn, asBits_fn, asMixed_fn;
       var Model = class {
         /** @param {import('./reads').Limits} limits */
         constructor(limits) {
@@ -2461,9 +2477,10 @@ var nxlineSerialPlc = (() => {
           __privateAdd(this, _limits);
           __privateAdd(this, _rules);
           __privateAdd(this, _joint);
+          __privateAdd(this, _sharing);
           /** Whether these words and their bits are one memory. @param {{ start: number, end: number }} span */
           __publicField(this, "isJoint", ({ start, end }) => {
-            for (const [from, to] of __privateGet(this, _joint)) if (from <= start && end <= to) return true;
+            for (const span of __privateGet(this, _joint)) if (span[0] <= start && end <= span[1]) return true;
             return false;
           });
           const { readBits, readWords, readMixed, info, again, frameCost = FRAME_COST } = limits;
@@ -2472,6 +2489,7 @@ var nxlineSerialPlc = (() => {
           __privateSet(this, _rules, { bit: rulesOf("bit", limits), word: rulesOf("word", limits) });
           this.most = { bit: Math.min(readBits, info), word: Math.min(readWords, info >> 1) };
           this.mostMixed = Math.min(readMixed, info >> 1);
+          __privateSet(this, _sharing, { most: this.mostMixed, isJoint: this.isJoint });
           this.repeats = again !== void 0;
           this.frameCost = frameCost;
           this.repeatCost = again ?? Infinity;
@@ -2499,7 +2517,7 @@ var nxlineSerialPlc = (() => {
         }
         /** What values take in a mixed request: addresses and bytes of the answer; null: it cannot hold them. @param {any} chunk */
         mixedShare(chunk) {
-          return shareOf(chunk, { most: this.mostMixed, isJoint: this.isJoint });
+          return shareOf(chunk, __privateGet(this, _sharing));
         }
         /** All the ways to read these values with one request. @param {Group[]} groups @returns {Frame[]} */
         frames(groups) {
@@ -2512,6 +2530,7 @@ var nxlineSerialPlc = (() => {
       _limits = new WeakMap();
       _rules = new WeakMap();
       _joint = new WeakMap();
+      _sharing = new WeakMap();
       _Model_instances = new WeakSet();
       sizeOf_fn = function(kind, count) {
         const { unit = 1, bitBytes = 1, scale = 1 } = __privateGet(this, _limits);
@@ -2682,21 +2701,29 @@ var nxlineSerialPlc = (() => {
         const keys = new Float64Array(size);
         let count = 0;
         for (let at = 0; at < size; at++) if (points[at].kind === kind) keys[count++] = points[at].address * size + at;
-        return keys.subarray(0, count).sort().map((key) => key % size);
+        return keys.subarray(0, count).sort();
       };
-      var groupAmong = (groups, { kind, address, count = 1 }) => {
-        const end = address + count;
+      var placeAmong = (groups, start, end) => {
         let at = groups.length;
-        while (at > 0 && groups[at - 1].start === address && groups[at - 1].end > end) at--;
+        while (at > 0 && groups[at - 1].start === start && groups[at - 1].end > end) at--;
         const known = groups[at - 1];
-        if (known && known.start === address && known.end === end) return known;
-        const group = { kind, start: address, end, points: [] };
-        groups.splice(at, 0, group);
-        return group;
+        return known && known.start === start && known.end === end ? at - 1 : at;
+      };
+      var add = (groups, group) => {
+        const { start, end, points } = group;
+        const at = placeAmong(groups, start, end);
+        if (at === groups.length) groups.push(group);
+        else if (groups[at].start === start && groups[at].end === end) groups[at].points.push(...points);
+        else groups.splice(at, 0, group);
       };
       var groupsOf = (points, kind, pointAt = (at) => at) => {
         const groups = [];
-        for (const at of inOrder(points, kind)) groupAmong(groups, points[at]).points.push(pointAt(at));
+        const keys = inOrder(points, kind);
+        for (let n = 0; n < keys.length; n++) {
+          const at = keys[n] % points.length;
+          const { address, count = 1 } = points[at];
+          add(groups, { kind, start: address, end: address + count, points: [pointAt(at)] });
+        }
         return groups;
       };
       var borders = (bounds) => {
@@ -2849,13 +2876,13 @@ var nxlineSerialPlc = (() => {
       var { wordsOf } = require_mixed2();
       var placesOf = (groups, model) => {
         const places = { word: [], bit: [] };
+        let among = 0;
         for (const group of groups) {
-          const span = group.kind === "word" ? group : wordsOf(group);
-          const among = group.kind === "word" || model.isJoint(span);
-          const { start, end } = among ? span : group;
-          places[among ? "word" : "bit"].push({ start, end, group });
+          const span = group.kind === "word" ? null : wordsOf(group);
+          if (!span || !model.isJoint(span)) places[group.kind].push(group);
+          else among = places.word.push({ start: span.start, end: span.end, group });
         }
-        for (const own of [places.word, places.bit]) own.sort((a, b) => a.start - b.start || a.end - b.end);
+        if (among > 0) places.word.sort((a, b) => a.start - b.start || a.end - b.end);
         return places;
       };
       var bitsOf = (groups) => {
@@ -2884,7 +2911,9 @@ var nxlineSerialPlc = (() => {
           if (start < last.end) return longest;
           return model.borderAfter(space, start - 1) === start ? 0 : grain;
         };
-        for (const { start, end, group } of places) {
+        for (const place of places) {
+          const { start, end } = place;
+          const group = "group" in place ? place.group : place;
           if (last && start <= last.end && Math.max(end, last.end) - last.start <= mostAt(start)) {
             last.end = Math.max(last.end, end);
             last.groups.push(group);
@@ -2937,56 +2966,84 @@ var nxlineSerialPlc = (() => {
   var require_table = __commonJS({
     "lib/plan/table.js"(exports, module) {
       "use strict";
-      var reachOf = (chunks, first, model) => {
-        const { space, start } = chunks[first];
-        const border = model.borderAfter(space, start);
-        const most = model.most[space];
-        let end = start;
-        let at = first;
-        for (; at < chunks.length && chunks[at].space === space; at++) {
+      var NO_BIT = -1e9;
+      var columnsOf = (chunks, model) => {
+        const column = () => new Int32Array(chunks.length);
+        const columns = {
+          start: column(),
+          end: column(),
+          /** first bit and the one after the last, where none of the values is a word */
+          firstBit: column().fill(NO_BIT),
+          lastBit: column(),
+          /** addresses and bytes of the answer in a mixed request; 0: it cannot hold them */
+          shares: column(),
+          answers: column(),
+          /** 1: a block may go on from the chunk before it */
+          follows: column()
+        };
+        let last = chunks[0];
+        for (let at = 0; at < chunks.length; at++) {
           const chunk = chunks[at];
-          if (at > first && (!model.mayBridge(space, end, chunk.start) || chunk.end > Math.max(border, end))) break;
-          end = Math.max(end, chunk.end);
-          if (end - start > most) break;
+          columns.start[at] = chunk.start;
+          columns.end[at] = chunk.end;
+          if (chunk.bits) {
+            columns.firstBit[at] = chunk.bits.first;
+            columns.lastBit[at] = chunk.bits.last;
+          }
+          if (chunk.share) {
+            columns.shares[at] = chunk.share.count;
+            columns.answers[at] = chunk.share.answer;
+          }
+          if (last.space === chunk.space && model.mayBridge(chunk.space, last.end, chunk.start)) columns.follows[at] = 1;
+          last = chunk;
         }
-        return at;
+        return columns;
       };
-      var costsByLength = (model) => {
-        const costsOf = (kind) => Float64Array.from({ length: model.most[kind] + 1 }, (_, count) => model.blockCost(kind, count));
-        return { bit: costsOf("bit"), word: costsOf("word") };
-      };
-      var fillCosts = (chunks, { from, to }, { costs, place, byLength }) => {
-        const { space, start, bits } = chunks[from];
-        const own = byLength[space];
-        let end = start;
-        let onlyBits = bits !== null;
-        for (let at = from; at < to; at++) {
-          const chunk = chunks[at];
-          end = Math.max(end, chunk.end);
-          costs[place + at - from] = own[end - start];
-          onlyBits && (onlyBits = chunk.bits !== null);
-          const span = onlyBits ? chunk.bits.last - bits.first : Infinity;
-          if (span < byLength.bit.length) costs[place + at - from] = Math.min(own[end - start], byLength.bit[span]);
+      var reaches = (chunks, { start, end, follows }, model) => {
+        const reach = new Int32Array(chunks.length);
+        let at = 0;
+        for (let first = 0; first < chunks.length; first++) {
+          const { space } = chunks[first];
+          const most = model.most[space];
+          const border = model.borderAfter(space, start[first]);
+          if (at <= first) at = end[first] - start[first] > most ? first : first + 1;
+          while (at > first && at < chunks.length && follows[at] === 1) {
+            if (end[at] > Math.max(border, end[at - 1]) || end[at] - start[first] > most) break;
+            at++;
+          }
+          reach[first] = at;
         }
+        return reach;
       };
+      var costsByLength = (model, kind) => {
+        const costs = new Float64Array(model.most[kind] + 1);
+        for (let count = 0; count < costs.length; count++) costs[count] = model.blockCost(kind, count);
+        return costs;
+      };
+      var isWord = ({ space }) => space === "word";
       var chunkTable = (chunks, model) => {
-        const count = chunks.length;
-        const first = new Int32Array(count + 1);
-        for (let at = 0; at < count; at++) first[at + 1] = first[at] + reachOf(chunks, at, model) - at;
-        const costs = new Float64Array(first[count]);
-        const byLength = costsByLength(model);
-        const shares = new Int32Array(count);
-        const answers = new Int32Array(count);
-        for (let at = 0; at < count; at++) {
-          const place = first[at];
-          fillCosts(chunks, { from: at, to: at + first[at + 1] - place }, { costs, place, byLength });
-          const { share } = chunks[at];
-          shares[at] = share ? share.count : 0;
-          answers[at] = share ? share.answer : 0;
-        }
-        return { count, shares, answers, costs, first };
+        const columns = columnsOf(chunks, model);
+        const reach = reaches(chunks, columns, model);
+        return {
+          ...columns,
+          count: chunks.length,
+          /** so many of them stand among words */
+          words: chunks.filter(isWord).length,
+          /** the chunk after the last that a block can hold which begins there */
+          reach,
+          /** all blocks that there can be */
+          blocks: reach.reduce((sum, end, at) => sum + end - at, 0),
+          word: costsByLength(model, "word"),
+          bit: costsByLength(model, "bit")
+        };
       };
-      module.exports = { chunkTable };
+      var costOf = ({ words, start, end, firstBit, lastBit, word, bit }, from, to) => {
+        const own = from < words ? word : bit;
+        const cost = own[end[to - 1] - start[from]];
+        for (let at = from; at < to; at++) if (firstBit[at] === NO_BIT) return cost;
+        return Math.min(cost, bit[lastBit[to - 1] - firstBit[from]] ?? Infinity);
+      };
+      module.exports = { NO_BIT, chunkTable, costOf };
     }
   });
 
@@ -2997,12 +3054,13 @@ var nxlineSerialPlc = (() => {
       var { chunksOf } = require_chunks();
       var { cycleCost } = require_model2();
       var { pack, roomOf } = require_pack();
-      var { chunkTable } = require_table();
+      var { NO_BIT, chunkTable, costOf } = require_table();
       var PRICES = [-2, -1.5, -1, -0.5, 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1, 1.5, 2, 3, 5, 8, 12, Infinity];
       var STEPS = 8;
       var WORK = 2e6;
       var MIXED = -1;
-      var choose = ({ count, shares, answers, costs, first }, price, { best, from }) => {
+      var choose = (table, price, { best, from }) => {
+        const { count, words, shares, answers, start, end, reach, firstBit } = table;
         best.fill(Infinity);
         best[0] = 0;
         for (let at = 0; at < count; at++) {
@@ -3012,24 +3070,41 @@ var nxlineSerialPlc = (() => {
             best[at + 1] = mixed;
             from[at + 1] = MIXED;
           }
-          const last = first[at + 1];
-          for (let place = first[at], next = at + 1; place < last; place++, next++) {
-            const cost = here + costs[place];
-            if (cost <= best[next]) {
-              best[next] = cost;
-              from[next] = at;
+          const own = at < words ? table.word : table.bit;
+          const first = start[at];
+          const last = reach[at];
+          for (let to = at + 1; to <= last; to++) {
+            const cost = here + own[end[to - 1] - first];
+            if (cost <= best[to]) {
+              best[to] = cost;
+              from[to] = at;
             }
           }
+          if (at < words && firstBit[at] !== NO_BIT) chooseBits(table, at, { best, from });
         }
         return from;
       };
-      var trace = ({ count, costs, first }, from) => {
+      var chooseBits = ({ reach, firstBit, lastBit, bit }, at, { best, from }) => {
+        const here = best[at];
+        const first = firstBit[at];
+        const last = reach[at];
+        for (let to = at + 1; to <= last && firstBit[to - 1] !== NO_BIT; to++) {
+          const span = lastBit[to - 1] - first;
+          if (span >= bit.length) return;
+          const cost = here + bit[span];
+          if (cost <= best[to]) {
+            best[to] = cost;
+            from[to] = at;
+          }
+        }
+      };
+      var trace = (table, from) => {
         const mixed = [];
         const blocks = [];
-        for (let to = count; to > 0; ) {
+        for (let to = table.count; to > 0; ) {
           const start = from[to] === MIXED ? to - 1 : from[to];
           if (from[to] === MIXED) mixed.push(start);
-          else blocks.push({ from: start, to, cost: costs[first[start] + to - start - 1] });
+          else blocks.push({ from: start, to, cost: costOf(table, start, to) });
           to = start;
         }
         return { mixed, blocks };
@@ -3120,7 +3195,7 @@ var nxlineSerialPlc = (() => {
         const chunks = chunksOf(groups, model);
         const table = chunkTable(chunks, model);
         const search = createSearch(table, model);
-        explore(search, { steps: table.costs.length + table.count, mostMixed: model.mostMixed });
+        explore(search, { steps: table.blocks + table.count, mostMixed: model.mostMixed });
         const { blocks, bins } = search.best;
         const sets = [
           ...blocks.map(({ from, to }) => chunks.slice(from, to)),
@@ -3200,10 +3275,24 @@ var nxlineSerialPlc = (() => {
         const [first, last, ...others] = [...frames].sort((a, b) => b.cost - b.again - (a.cost - a.again));
         return last ? [first, ...others, last] : frames;
       };
+      var runsOf = (groups) => {
+        let runs = 0;
+        let last = groups[0].kind;
+        let until = -Infinity;
+        for (const { kind, start, end } of groups) {
+          if (kind !== last || start > until) {
+            runs++;
+            last = kind;
+            until = end;
+          } else if (end > until) until = end;
+        }
+        return runs;
+      };
       var bestPlan = (groups, model, limits) => {
         if (groups.length <= MOST_EXACT) return exactPlan(groups, model);
         const priced = pricedPlan(groups, model);
         const found = groups.length <= MOST_GROUPS_MERGED ? merged(priced, model) : priced;
+        if ((runsOf(groups) - 1) * model.frameCost >= cycleCost(found)) return found;
         const plain = plainBlocks(groups, model, limits.bounds);
         const isPlain = servesAll(plain, groups) && cycleCost(plain.map((block) => model.pricesOfBlock(block))) <= cycleCost(found);
         return isPlain ? plain.map((block) => model.frames(block.groups)[0]) : found;

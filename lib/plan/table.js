@@ -1,7 +1,7 @@
 'use strict'
 
 /**
- * Chunks as plain numbers, with what a block costs from each of them to each that it can reach: what a search asks thousands of times. Pure.
+ * Chunks as plain numbers, how far a block can reach from each of them, and what it costs: what a search asks thousands of times. Pure.
  *
  * @typedef {import('./chunks').Chunk} Chunk
  */

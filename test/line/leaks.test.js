@@ -93,7 +93,6 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
     const link = path.join(folder, 'port')
     const pty = createPty({ link })
     pty.onData(bytes => pty.write(toy.answer(bytes[1], [1], bytes[2])))
-    // no faster: a busy machine takes its time to take the bytes
     /** @type {WeakRef<any>[]} */
     const made = []
     const noted = (...given) => {
@@ -101,6 +100,7 @@ describe('line: a thousand redeploys and reconnects leave nothing behind', () =>
       made.push(new WeakRef(transport))
       return transport
     }
+    // no faster: a busy machine takes its time to take the bytes
     const pool = createPool({ clock: fastClock(15), random: () => 0, transports: { serial: noted } })
     const lease = pool.open({ path: link, baudRate: 115200, slack: 5000, latenessBound: 1 }, { id: 'a', name: 'a' })
     let files, handles

@@ -59,6 +59,8 @@ const listeningFlow = (settings, { turn = 0, without = '' } = {}) =>
     }
   ]).map(node => (node.id === without ? { ...node, d: true } : node))
 
+const countOf = heard => Object.fromEntries(LISTENERS.map(device => [device, heard[device].length]))
+
 /** @param {string} folder for the port */
 async function startListening(folder) {
   const clock = createRealClock()
@@ -87,6 +89,8 @@ async function startListening(folder) {
       c24: { baudRate: BAUD, transport: 'serial', path: pty.path() },
       incon: { baudRate: BAUD, transport: 'tcp', host: '127.0.0.1', port: tcp.port }
     },
+    /** Messages that each of them has got so far. */
+    heard: () => countOf(heard),
     /** @returns {Record<string, number>} messages that each of them got: whole, none twice, none glued to another */
     check() {
       for (const device of LISTENERS) {
@@ -95,7 +99,7 @@ async function startListening(folder) {
         const whole = heard[device].filter(text => text.length === 13)
         assert.equal(new Set(whole).size, whole.length, `${device} got something twice`)
       }
-      return Object.fromEntries(LISTENERS.map(device => [device, heard[device].length]))
+      return countOf(heard)
     },
     async close() {
       module.close()

@@ -15,6 +15,8 @@ const { placed, startNodeRed, until } = require('./node-red.js')
 
 const LINES = ['serial', 'tcp', 'simulated']
 const DEPLOY_MS = 2000
+/** Messages that each device must get in each pause between the deploys. However fast these are: there must be something to look at. */
+const MESSAGES = 6
 
 const reading = (line, extra) => ({
   plc: `plc-${line}`,
@@ -125,12 +127,15 @@ const leftBehind = (now, start) =>
   now.descriptors.length > start.descriptors.length ||
   now.listeners > start.listeners
 
-/** Values of all lines, newer than now. */
-async function allFlow(red) {
+/** Values of all lines, newer than now, and messages to the devices. */
+async function allFlow(red, { listening }) {
   red.forget()
+  const before = listening.heard()
   const values = LINES.map(line => red.next(`debug-${line}`, value => value.K0 !== undefined, 15000))
   const messages = LISTENERS.map(device => red.next(`debug-${device}`, value => /^[A-Z]+ /.test(value), 15000))
-  await Promise.all([...values, ...messages])
+  const sent = () => LISTENERS.every(device => listening.heard()[device] >= before[device] + MESSAGES)
+  const what = () => `messages to the devices: ${JSON.stringify({ before, now: listening.heard() })}`
+  await Promise.all([...values, ...messages, until(sent, { what, patience: 15000 })])
 }
 
 /**
@@ -148,11 +153,11 @@ async function redeploys({ rounds, calm = false, baudRate = 115200, tell = _text
   })
   try {
     await red.deploy(flowOf(lines.settings))
-    await allFlow(red)
+    await allFlow(red, lines)
     await red.deploy([])
     const before = await until(() => red.count(), { what: 'a count' })
     const done = await rounded({ red, lines, rounds, calm, tell })
-    await allFlow(red)
+    await allFlow(red, lines)
     await red.deploy([])
     const connected = () => lines.tcp.connections() + lines.listening.tcp.connections()
     assert.equal(await until(() => connected() === 0, { what: 'TCP connections to end' }), true)
@@ -221,7 +226,7 @@ async function rounded({ red, lines, rounds, calm, tell }) {
     if (turn % 50 === 0) {
       replug(lines)
       await red.deploy(flowOf(lines.settings))
-      await allFlow(red)
+      await allFlow(red, lines)
       if (turn % 100 === 0) tell(`${turn} deploys, slowest ${done.slowest} ms, all lines deliver`)
     }
   }

@@ -2,8 +2,9 @@
 
 const fs = require('node:fs')
 
-/** Of the poller: tell when there is something to read. */
+/** Of the poller: tell when there is something to read, or room to write. */
 const READABLE = 1
+const WRITABLE = 2
 
 const isAgain = error => error.code === 'EAGAIN' || error.code === 'EWOULDBLOCK' || error.code === 'EINTR'
 
@@ -45,11 +46,23 @@ class DescriptorReader {
     this.#port = port
     this.#pace = pace
     port.poller.on('readable', this.#told)
+    this.#askBoth(port.poller)
+  }
+
+  /** What is asked of the system replaces what was asked before: who waits to write would be forgotten for who waits to read, and the other way round. */
+  #askBoth(poller) {
+    const ask = poller.poll
+    poller.poll = events => {
+      const read = this.#polls ? READABLE : 0
+      const write = this.#isWriting ? WRITABLE : 0
+      ask.call(poller, events | read | write)
+    }
   }
 
   /** The port was closed. Its poller may live as long as the process (bindings-cpp): it must not know who reads. */
   end() {
     this.#port.poller.off('readable', this.#told)
+    delete this.#port.poller.poll
     if (this.#polls) this.#told(canceled())
     this.#buffer = null
     this.#done = nobody

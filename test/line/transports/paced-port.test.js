@@ -12,6 +12,8 @@ const supported = ['linux', 'darwin'].includes(process.platform)
 /** More than the buffers of a port and of who reads it take. */
 const MUCH = 200000
 const TURNS = 100
+const DC1 = 0x11
+const DC3 = 0x13
 
 const turn = () => new Promise(resolve => setImmediate(resolve))
 const until = async condition => {
@@ -24,7 +26,8 @@ const until = async condition => {
     pty = createPty({})
     clock = createVirtualClock()
     pace = new Pace(clock)
-    port = await pacedBinding(SerialPort.binding, pace).open({ path: pty.path(), baudRate: 115200 })
+    const options = { path: pty.path(), baudRate: 115200, xon: true, xoff: true }
+    port = await pacedBinding(SerialPort.binding, pace).open(options)
     open = new OpenPort(port, error => assert.fail(error))
     got = ''
     open.read(bytes => (got += bytes))
@@ -57,5 +60,27 @@ const until = async condition => {
     assert.equal(got, 'B')
     await clock.advance(1000)
     await until(() => got === 'BCD')
+  })
+
+  // the system was asked either for bytes or for room, for what was wanted last: whom the other side had stopped heard nothing of it
+  it('hears the other side that has stopped it, and goes on when it may', async () => {
+    let given = 0
+    let taken = 0
+    let drained = 0
+    pty.onData(bytes => (drained += bytes.length))
+    const stopped = () => port.poller.listenerCount('writable') > 0
+    pty.write(Buffer.of(DC3))
+    await until(() => {
+      if (given === taken && !stopped())
+        open.write(Buffer.from('A'), error => (error ? assert.fail(error) : taken++), given++)
+      return stopped()
+    })
+    for (const heard of ['B', 'BC']) {
+      pty.write(Buffer.from(heard.at(-1)))
+      await until(() => got === heard)
+    }
+    assert.equal(stopped(), true)
+    pty.write(Buffer.of(DC1))
+    await until(() => taken === given && drained === given)
   })
 })
